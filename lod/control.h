@@ -37,6 +37,7 @@ struct ControlFunction {
   double weight = 0;            // >= 0; 0: the function is not evaluated
   vpe::core::LevelTable table;  // replaces scale and offset if it has rows
   double x_factor = 1;          // > 0, factor on x; a time budget raises it, which makes tiles coarser
+  bool operator==(const ControlFunction&) const = default;
 };
 
 // Returns the levels at x, not weighted. Infinite at x = 0 if the scale is not 0.
@@ -47,6 +48,7 @@ struct ControlRegion {
   glm::dvec3 centre{1, 0, 0};
   double chord2 = 0;  // squared chord of its radius
   int levels = 0;
+  bool operator==(const ControlRegion&) const = default;
 };
 ControlRegion control_region(const vpe::core::InterestRegion& region, double planet_radius_m);
 
@@ -61,6 +63,7 @@ struct LevelControl {
   ControlFunction centre;
   double interest_weight = 1;
   std::vector<ControlRegion> regions;
+  bool operator==(const LevelControl&) const = default;
 };
 
 // The centre of the field of view: the direction straight ahead of the full image, so that the parts of an

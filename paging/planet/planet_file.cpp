@@ -12,14 +12,15 @@
 
 namespace paging {
 
-std::shared_ptr<const PlanetFile> PlanetFile::open(const std::string& path) {
-  return std::shared_ptr<const PlanetFile>(new PlanetFile(path));
+std::shared_ptr<const PlanetFile> PlanetFile::open(const std::string& path, BeforeRead before_read) {
+  return std::shared_ptr<const PlanetFile>(new PlanetFile(path, std::move(before_read)));
 }
 
 PlanetFile::~PlanetFile() = default;
 
-PlanetFile::PlanetFile(const std::string& path)
+PlanetFile::PlanetFile(const std::string& path, BeforeRead before_read)
     : path_(path),
+      before_read_(std::move(before_read)),
       connections_([this] { return std::make_unique<Connection>(*this); },
                    {.reset = [](Connection& connection) { connection.reset(); }}) {
   std::error_code error;

@@ -2,6 +2,7 @@
 // tables.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,7 +46,10 @@ class PlanetFile {
  public:
   // Opens the file and reads meta and the tile index. Throws PlanetError for a file that does not exist, is of
   // another kind or of a newer major format, or is incomplete or damaged.
-  static std::shared_ptr<const PlanetFile> open(const std::string& path);
+  // `before_read` is called on the reading thread before the heights, a mesh or an image of a tile are read. It
+  // may wait, and may throw PlanetError in their place: for tests of slow and broken storage.
+  using BeforeRead = std::function<void(const lod::TileKey& tile)>;
+  static std::shared_ptr<const PlanetFile> open(const std::string& path, BeforeRead before_read = {});
   ~PlanetFile();
 
   // Opens a connection of the caller's own to the same planet. Throws PlanetError if the path belongs to another
@@ -78,13 +82,14 @@ class PlanetFile {
 
  private:
   struct Connection;
-  explicit PlanetFile(const std::string& path);
+  PlanetFile(const std::string& path, BeforeRead before_read);
   void read_index(const Database& db);
   // Returns what fetch(connection) returns, if the file was not written to until then.
   template <class Read>
   auto read(const Read& fetch) const;
 
   std::string path_;
+  BeforeRead before_read_;
   PlanetMeta meta_;
   std::string meta_checksum_;  // differs between planets
   std::unique_ptr<lod::TileTree> tree_;

@@ -50,6 +50,7 @@ void put_on_coarser_edges(TileHeights& heights, double radius_m, double exaggera
 }
 
 TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) const {
+  if (before_read_) before_read_(key);
   const std::int64_t row = lod::pack(key);
   struct Stored {
     int coarser_neighbour_mask = 0;
@@ -94,6 +95,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
 }
 
 PackedMesh PlanetFile::mesh(const lod::TileKey& key, int variant) const {
+  if (before_read_) before_read_(key);
   const std::int64_t row = lod::pack(key);
   const lod::TileInfo* tile = tree_->find(key);
   if (tile == nullptr) throw PlanetError(damaged(path_, key, "not in the index"));
@@ -152,6 +154,7 @@ TileSources PlanetFile::sources(const lod::TileKey& key) const {
 }
 
 ImageTile PlanetFile::image(const lod::TileKey& key) const {
+  if (before_read_) before_read_(key);
   const std::int64_t row = lod::pack(key);
   try {
     const auto packed = read([&](Connection& connection) {

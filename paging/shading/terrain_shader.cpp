@@ -107,12 +107,20 @@ std::shared_ptr<const ImageTile> TerrainShader::image(const lod::TileKey& key) c
 
 std::shared_ptr<const NormalTile> TerrainShader::normals(const lod::TileKey& key,
                                                          const ShadingParams& params) const {
-  const glm::dvec3 sun = params.lit && params.shadows ? params.sun : glm::dvec3(0);
-  return normals_.get({key, params.exaggeration, sun}, [&] {
+  return normals_.get(normal_key(key, params), [&] {
     auto made = std::make_shared<const NormalTile>(make_normals(key, params));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
+}
+
+std::shared_ptr<const NormalTile> TerrainShader::held_normals(const lod::TileKey& key,
+                                                              const ShadingParams& params) const {
+  return normals_.find(normal_key(key, params));
+}
+
+std::shared_ptr<const ImageTile> TerrainShader::held_image(const lod::TileKey& key) const {
+  return images_.find(key);
 }
 
 lod::TileKey TerrainShader::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }

@@ -147,6 +147,9 @@ class TerrainShader {
   // returned. Throw PlanetError.
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadingParams& params) const;
   std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
+  // Return the same if they are held, else null. Read nothing.
+  std::shared_ptr<const NormalTile> held_normals(const lod::TileKey& key, const ShadingParams& params) const;
+  std::shared_ptr<const ImageTile> held_image(const lod::TileKey& key) const;
 
   std::size_t bytes_resident() const;
 
@@ -169,6 +172,9 @@ class TerrainShader {
     glm::dvec3 sun;  // for shadows, else 0
     bool operator==(const NormalKey&) const = default;
   };
+  static NormalKey normal_key(const lod::TileKey& key, const ShadingParams& params) {
+    return {key, params.exaggeration, params.lit && params.shadows ? params.sun : glm::dvec3(0)};
+  }
   struct NormalKeyHash {
     std::size_t operator()(const NormalKey& k) const {
       return lod::TileKeyHash()(k.key) ^ std::hash<double>()(k.exaggeration + k.sun.x + 3 * k.sun.y);

@@ -19,12 +19,14 @@ using vpe::base::mutated;
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kAbsent = -kNone;
 
 class FaceCaster {
  public:
-  FaceCaster(const Surface& surface, mars::Face face, const glm::dvec3& camera, const glm::dvec3& direction,
-             double exaggeration)
+  FaceCaster(const Surface& surface, const Surface::TileProvider& tiles, mars::Face face,
+             const glm::dvec3& camera, const glm::dvec3& direction, double exaggeration)
       : surface_(surface),
+        tiles_(tiles),
         tree_(surface.planet().tree()),
         radius_(surface.planet_radius_m()),
         exaggeration_(exaggeration),
@@ -36,6 +38,7 @@ class FaceCaster {
   // Returns the part of the ray inside the face's pyramid.
   Interval reach() const { return line_.in_face({0.0, kNone}); }
 
+  // Returns the hit, kNone, or kAbsent where a tile is not provided.
   double cast(Interval part) const { return in_tile(static_cast<lod::TileTree::Index>(face_), part); }
 
  private:
@@ -66,7 +69,8 @@ class FaceCaster {
     if (above(part, info.max_height_m)) return kNone;
     const lod::TileKey& key = info.key;
     if (!info.has_children) {
-      const auto tile = surface_.tile(key, exaggeration_);
+      const auto tile = tiles_(key);
+      if (tile == nullptr) return kAbsent;
       return in_block(*tile, static_cast<int>(tile->block_max.size()), 0, 0, part);
     }
     const lod::TileTree::Index first = tree_.first_child(index);
@@ -108,6 +112,7 @@ class FaceCaster {
   }
 
   const Surface& surface_;
+  const Surface::TileProvider& tiles_;
   const lod::TileTree& tree_;
   double radius_;
   double exaggeration_;
@@ -121,6 +126,13 @@ class FaceCaster {
 
 double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration,
                      const RaySegment& segment) const {
+  const TileProvider all = [&](const lod::TileKey& key) { return tile(key, exaggeration); };
+  return *cast_over(all, camera_m, direction, exaggeration, segment);
+}
+
+std::optional<double> Surface::cast_over(const TileProvider& tiles, const glm::dvec3& camera_m,
+                                         const glm::dvec3& direction, double exaggeration,
+                                         const RaySegment& segment) const {
   // Only the part inside the sphere of the highest terrain can hit.
   const double radius = planet_->radius_m();
   const double top = radius + exaggeration * (planet_->meta().highest_radius_m - radius);
@@ -138,7 +150,8 @@ double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, do
   };
   std::vector<Candidate> candidates;
   for (int f = 0; f < mars::kFaces; ++f) {
-    Interval part = FaceCaster(*this, static_cast<mars::Face>(f), camera_m, direction, exaggeration).reach();
+    Interval part =
+        FaceCaster(*this, tiles, static_cast<mars::Face>(f), camera_m, direction, exaggeration).reach();
     part = {std::max(part.begin, region.begin), std::min(part.end, region.end)};
     if (!part.empty()) candidates.push_back({part.begin, part.end, f});
   }
@@ -147,8 +160,10 @@ double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, do
               [](const Candidate& a, const Candidate& b) { return a.begin < b.begin; });
   }
   for (const Candidate& candidate : candidates) {
-    const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), camera_m, direction, exaggeration);
+    const FaceCaster caster(*this, tiles, static_cast<mars::Face>(candidate.face), camera_m, direction,
+                            exaggeration);
     const double hit = caster.cast({candidate.begin, candidate.end});
+    if (hit == kAbsent) return std::nullopt;
     if (hit < kNone) return hit;
   }
   return kNone;

@@ -94,8 +94,18 @@ std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
+  return exaggerated(std::move(tile), exaggeration);
+}
+
+std::shared_ptr<const SurfaceTile> Surface::held_tile(const lod::TileKey& key, double exaggeration) const {
+  auto tile = cache_.find(key);
+  return tile ? exaggerated(std::move(tile), exaggeration) : nullptr;
+}
+
+std::shared_ptr<const SurfaceTile> Surface::exaggerated(std::shared_ptr<const SurfaceTile> tile,
+                                                        double exaggeration) const {
   if (exaggeration == 1.0 || tile->data.coarser_neighbour_mask == 0) return tile;
-  return exaggerated_.get({key, exaggeration}, [&] {
+  return exaggerated_.get({tile->data.posts.key, exaggeration}, [&] {
     TileHeights heights = tile->data;
     put_on_coarser_edges(heights, planet_radius_m(), exaggeration);
     auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
@@ -162,6 +172,19 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
     out.nodata = lod::is_flagged(tile->data.nodata, j * side + i, side, x, y);
   }
   return out;
+}
+
+double Surface::readable_radius_m(const glm::dvec3& direction, double exaggeration) const {
+  const mars::ChartPoint point = mars::chart_point(direction);
+  for (lod::TileKey key = finest_tile(planet_->tree(), point);; key = lod::ancestor(key, key.level - 1)) {
+    try {
+      const auto tile = this->tile(key, exaggeration);
+      return planet_radius_m() + lod::surface_height(tile->data.posts, tile->lines, point.u, point.v,
+                                                     planet_radius_m(), nullptr, exaggeration);
+    } catch (const PlanetError&) {
+      if (key.level == 0) throw;
+    }
+  }
 }
 
 bool Surface::is_below(const glm::dvec3& place_m, double exaggeration) const {

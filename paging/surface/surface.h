@@ -1,9 +1,11 @@
 // The reference surface at run time: the exact surface of a planet file, sampled and cast against.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -76,9 +78,23 @@ class Surface {
     return cast(camera_m, direction, exaggeration, RaySegment());
   }
 
+  // Provides a finest tile to cast_over(), or null if it is not to be had.
+  using TileProvider = std::function<std::shared_ptr<const SurfaceTile>(const lod::TileKey&)>;
+  // Casts as cast() does, over the tiles of a provider. Returns nullopt if the ray needs a tile that it does not
+  // provide. Throws what the provider throws.
+  std::optional<double> cast_over(const TileProvider& tiles, const glm::dvec3& camera_m,
+                                  const glm::dvec3& direction, double exaggeration,
+                                  const RaySegment& segment) const;
+
+  // Returns the radius of the surface in a direction, as at() does. Where the finest tile cannot be read, the
+  // posts of its nearest readable ancestor take its place. Throws PlanetError if not even the root can be read.
+  double readable_radius_m(const glm::dvec3& direction, double exaggeration) const;
+
   // Returns a finest tile, or the own posts of a coarser one. With an exaggeration: its posts as drawn (see
   // PlanetFile::heights). Throws PlanetError.
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key, double exaggeration = 1.0) const;
+  // Returns the same if it is held, else null. Reads nothing.
+  std::shared_ptr<const SurfaceTile> held_tile(const lod::TileKey& key, double exaggeration = 1.0) const;
   // Returns the sources of a finest tile. Throws PlanetError.
   std::shared_ptr<const TileSources> sources(const lod::TileKey& key) const;
   std::size_t bytes_resident() const { return cache_.bytes() + exaggerated_.bytes() + sources_.bytes(); }
@@ -87,6 +103,9 @@ class Surface {
   double middle_line(int level, std::int32_t index) const;
 
  private:
+  std::shared_ptr<const SurfaceTile> exaggerated(std::shared_ptr<const SurfaceTile> tile,
+                                                 double exaggeration) const;
+
   std::shared_ptr<const PlanetFile> planet_;
   std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
   mutable vpe::base::LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;

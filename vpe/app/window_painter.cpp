@@ -1,5 +1,6 @@
 #include "vpe/app/window_painter.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "vpe/app/picture/image_options.h"
@@ -54,9 +55,9 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
 }
 
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
-  // Levels that are controlled are drawn by triangles, whatever is chosen.
+  // A limit of triangles is kept by triangles, whatever is chosen.
   const core::Backend backend =
-      voxel::level_control(request.draw).empty() ? request.backend : core::Backend::kPolygon;
+      voxel::refused_control(request.draw).empty() ? request.backend : core::Backend::kPolygon;
   if (backend_ != backend) {
     renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
@@ -66,6 +67,13 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     backend_ = backend;
   }
   core::DrawRequest draw_request = request.draw;
+  if (core::SettingsValues& values = draw_request.settings; backend == core::Backend::kRay &&
+                                                            values.ray_mode == core::RayMode::kExact &&
+                                                            !voxel::multires_control(draw_request).empty()) {
+    values.ray_mode = core::RayMode::kMultires;
+    values.ray_cell_px =
+        std::clamp(values.lod_tolerance_px, core::RayLimits::kLeastCell_px, core::RayLimits::kMostCell_px);
+  }
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;
   const bool has_other_palette = take_palette(draw_request, drawn);

@@ -65,18 +65,18 @@ struct FrameStats {
 
 struct DrawRequest;
 
-// Describes how a frame treats tiles that are not loaded yet. The ray backend reads its tiles within the frame,
-// whatever stands here: its frames are always complete and settled, and take as long as storage does.
+// Describes how a frame treats tiles that are not loaded yet.
 struct PagingRequest {
   // True: the frame waits for all tiles of its view, so that its image does not depend on earlier frames; for
   // images and films. False: the frame is drawn at once with loaded tiles, coarser ones where finer ones are
   // missing; for windows.
   bool wait = true;
-  // Longest wait; then the loaded tiles are drawn. Shorter: frames may be incomplete.
+  // Longest wait; then the loaded tiles are drawn. Shorter: frames may be incomplete. By rays: the time that may be
+  // spent with reading.
   double timeout_s = std::numeric_limits<double>::infinity();
   // Time for uploads in a frame that does not wait; one tile is uploaded in any case. Smaller: steadier frame
   // times, later refinement.
-  double upload_ms = 4;
+  double upload_ms = 4;  // of triangles
   // Views where the camera is expected soon, nearest first. Their tiles are loaded after all tiles of the view
   // itself. Does not affect a complete frame.
   std::vector<View> upcoming;
@@ -126,9 +126,10 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  // Draws one image. The polygon backend replaces a tile that cannot be read by its nearest readable ancestor
-  // and lists it as missing; the ray backend throws. Has one caller at a time, on the thread that made the
-  // renderer. Throws std::runtime_error with what failed, why, and what to do.
+  // Draws one image. A tile that cannot be read, or is not loaded in time, is replaced by its nearest ancestor that
+  // is there, and listed as missing; the certificate holds for what was drawn. Has one caller at a time, on the
+  // thread that made the renderer. Throws std::runtime_error with what failed, why, and what to do; also where not
+  // even a root can be read.
   virtual DrawResult draw(const DrawRequest& request) = 0;
 };
 

@@ -129,12 +129,12 @@ class Resident {
     }
     return gone;
   }
-  // Drops all values whose detail fulfils a condition.
+  // Drops all values whose detail and latest mark fulfil a condition.
   template <typename Drop>
   void drop(const Drop& drop) {
     for (auto at = items_.begin(); at != items_.end();) {
       std::erase_if(at->second, [&](const Item& item) {
-        if (!drop(item.detail)) return false;
+        if (!drop(item.detail, item.frame)) return false;
         bytes_ -= item.value->bytes;
         return true;
       });

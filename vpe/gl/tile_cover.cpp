@@ -129,23 +129,45 @@ LoadOutcome TileCover::load_cover(const core::DrawRequest& request, TileStreamer
   return streamer_.load(textures, {}, deadline);
 }
 
+void TileCover::replace_unreadable(const core::View& view, lod::FallbackSelection& result) const {
+  const auto readable = [](const void* streamer, const lod::TileInfo& tile, int) {
+    return static_cast<const TileStreamer*>(streamer)->is_readable(tile.key);
+  };
+  lod::select_fallbacks(options_, planet_.tree(), lod::select_view(view), wanted_, {readable, &streamer_},
+                        result);
+}
+
+lod::Selection TileCover::readable(const core::View& view) const {
+  lod::FallbackSelection result;
+  replace_unreadable(view, result);
+  return std::move(result.drawn);
+}
+
 bool TileCover::load_all(const core::DrawRequest& request) {
   const double limit_s = std::min(request.paging.timeout_s, 1e9);
   const TileStreamer::Deadline deadline =
       limit_s < 1e9 ? Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * limit_s))
                     : TileStreamer::Deadline::max();
-  const lod::SelectView view = lod::select_view(request.view);
-  const auto readable = [](const void* streamer, const lod::TileInfo& tile, int) {
-    return static_cast<const TileStreamer*>(streamer)->is_readable(tile.key);
-  };
   for (;;) {
-    lod::select_fallbacks(options_, planet_.tree(), view, wanted_, {readable, &streamer_}, drawn_);
+    replace_unreadable(request.view, drawn_);
     const LoadOutcome outcome = load_cover(request, deadline);
-    if (outcome == LoadOutcome::kAll) return true;
+    if (outcome == LoadOutcome::kAll) {
+      require_cover();
+      return true;
+    }
     if (outcome == LoadOutcome::kTimeout) break;
   }
   use_resident(request);
   return false;
+}
+
+// Ground that nothing covers would be drawn as sky.
+void TileCover::require_cover() const {
+  if (drawn_.uncovered == 0) return;
+  for (const std::size_t n : drawn_.missing) {
+    if (const std::string* why = streamer_.failure(lod::ancestor(wanted_.tiles[n].key, 0)))
+      throw paging::PlanetError(*why);
+  }
 }
 
 // The roots of the faces that are missing. Returns false if none could be added.
@@ -200,6 +222,7 @@ void TileCover::cover_without(std::span<const std::uint8_t> left_out, const core
     lod::select_fallbacks(options_, planet_.tree(), select_view, needed, resident, drawn_);
   }
   for (std::size_t& n : drawn_.missing) n = places[n];
+  require_cover();
   hidden_.assign(drawn_.drawn.tiles.size(), 0);
   if (!left_out.empty()) merge_hidden(left_out);
 }
@@ -313,7 +336,6 @@ void TileCover::report(core::DrawResult& result) const {
   s.tiles_culled_horizon = wanted_.culled_horizon;
   s.tiles_culled_occlusion = static_cast<int>(std::count(hidden_.begin(), hidden_.end(), 1));
   s.tiles_drawn = static_cast<int>(tiles_.size());
-  s.tiles_missing = static_cast<int>(drawn_.missing.size());
   s.tiles_substituted = drawn_.substituted;
   s.triangles = 0;
   s.skirt_triangles = 0;
@@ -334,6 +356,12 @@ void TileCover::report(core::DrawResult& result) const {
     const std::string* why = streamer_.failure(key);
     result.missing.push_back({lod::to_string(key), why == nullptr ? "not loaded yet" : *why, why != nullptr});
   }
+  for (const SceneTile& t : tiles_) {
+    if (t.texture == nullptr) continue;
+    if (const std::string* why = streamer_.coarse_colours(t.tile->key))
+      result.missing.push_back({lod::to_string(t.tile->key), *why, true});
+  }
+  s.tiles_missing = static_cast<int>(result.missing.size());
 }
 
 }  // namespace vpe::gl

@@ -48,7 +48,7 @@ class TileCover {
   void select(const core::DrawRequest& request);
 
   // Loads all that is selected and not hidden, and covers the frame with it. Tiles that cannot be read are
-  // covered by their nearest readable ancestors. Returns false when the request's time-out has passed: then the
+  // covered by their nearest readable ancestors. Throws paging::PlanetError if that fails too. Returns false when the request's time-out has passed: then the
   // frame is covered with what is resident.
   bool load_all(const core::DrawRequest& request);
 
@@ -66,6 +66,9 @@ class TileCover {
   // Returns what the frame's view needs, and flags of what of it is hidden and not resident. No flags: none.
   const lod::Selection& wanted() const { return wanted_; }
   std::span<const std::uint8_t> not_needed() const { return not_needed_; }
+  // Returns what the frame's view needs where some of it cannot be read: the nearest readable ancestors in the
+  // places of the others, as load_all() has them.
+  lod::Selection readable(const core::View& view) const;
   // Returns the cover, hidden tiles included.
   const lod::Selection& cover() const { return drawn_.drawn; }
 
@@ -79,9 +82,12 @@ class TileCover {
   void report(core::DrawResult& result) const;
 
  private:
+  void replace_unreadable(const core::View& view, lod::FallbackSelection& result) const;
   TileStreamer::LoadOutcome load_cover(const core::DrawRequest& request, TileStreamer::Deadline deadline);
   TileStreamer::LoadOutcome load_ground(const core::View& view, TileStreamer::Deadline deadline);
   bool load_roots(const lod::Selection& needed);
+  // Throws paging::PlanetError if nothing covers a tile because not even its root can be read.
+  void require_cover() const;
   void cover_without(std::span<const std::uint8_t> left_out, const core::View& view);
   void merge_hidden(std::span<const std::uint8_t> left_out);
   void occlude(const lod::Selection& tiles, const core::View& view, std::vector<std::uint8_t>& hidden);

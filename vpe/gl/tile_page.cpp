@@ -19,6 +19,18 @@ void PageLoader::with_mesh(const lod::TileKey& tile, int variant, double exagger
   visit(packed.mesh, std::span<const double>(heights));
 }
 
+// Finer texels need the posts of tiles below this one. Where these cannot be read, coarser texels serve.
+ShadedTile PageLoader::shade(const PageKey& key, std::string& coarse_because) const {
+  for (int intervals = key.detail;; intervals /= 2) {
+    try {
+      return terrain_shader_->shade(key.tile, intervals, *key.shading);
+    } catch (const paging::PlanetError& e) {
+      if (intervals / 2 < planet_->meta().tile.intervals()) throw;
+      coarse_because = e.what();
+    }
+  }
+}
+
 std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
   Page page;
   switch (key.kind) {
@@ -46,7 +58,7 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
                     }
                   });
       } else {
-        page.shaded = terrain_shader_->shade(key.tile, key.detail, *key.shading);
+        page.shaded = shade(key, page.coarse_because);
       }
       const std::size_t bytes = page.shaded.bytes();
       return {std::move(page), bytes};

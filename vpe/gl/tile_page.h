@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "lod/occluder_profile.h"
@@ -51,6 +52,7 @@ struct Page {
   std::shared_ptr<const lod::OccluderProfile> occluders;  // of the geometry; null unless requested
   ShadedTile shaded;
   std::shared_ptr<const paging::TileHeights> ground;
+  std::string coarse_because;  // why the texture has fewer texels than asked for; "" if it has not
 };
 
 // Makes pages from a planet file. Thread rule: any thread may call load().
@@ -64,6 +66,7 @@ class PageLoader {
   std::pair<Page, std::size_t> load(const PageKey& key) const;
 
  private:
+  ShadedTile shade(const PageKey& key, std::string& coarse_because) const;
   // Calls visit(mesh, heights of its vertices as drawn) for one of a tile's meshes.
   template <typename Visit>
   void with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const;

@@ -62,7 +62,11 @@ void TileScene::prepare(const core::DrawRequest& request) {
 void TileScene::request_pages(const core::DrawRequest& request) {
   streamer_.begin_requests();
   if (!request.paging.wait) {
-    streamer_.request_frame(cover_.wanted(), cover_.not_needed(), cover_.cover(), request.view);
+    if (streamer_.is_all_readable()) {
+      streamer_.request_frame(cover_.wanted(), cover_.not_needed(), cover_.cover(), request.view);
+    } else {
+      streamer_.request_frame(cover_.readable(request.view), {}, cover_.cover(), request.view);
+    }
     const auto request_ground = [&](const core::View& view) {
       if (const auto page = clearance_.needed_page(view)) streamer_.request(*page, kGroundUrgency_px);
     };

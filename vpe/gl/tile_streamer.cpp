@@ -124,7 +124,9 @@ void TileStreamer::set_shading(const core::DrawRequest& request) {
 
 void TileStreamer::drop_other_shadings() {
   if (!wants_textures_ || !std::exchange(has_other_shadings_, false)) return;
-  textures_.drop([&](const TextureDetail& t) { return t.shading != shading_; });
+  textures_.drop([&](const TextureDetail& t, std::uint64_t frame) {
+    return t.shading != shading_ && frame != frame_;  // drawn tiles have pointers to those of this frame
+  });
 }
 
 std::vector<TileNeed> TileStreamer::needs_of(const lod::Selection& selection, const core::View& view) const {
@@ -178,14 +180,21 @@ bool TileStreamer::is_drawable(const lod::TileInfo& tile, int variant) {
   const bool mesh = meshes_.best(tile.key, frame_,
                                  [&](const MeshDetail& m) { return m.variant == variant ? 0 : -1; }) != nullptr;
   if (!mesh) return false;
+  // A tile that cannot be read any more keeps no light of an earlier sun.
+  const bool any_shading = is_readable(tile.key);
   return !is_textured(tile.key) || textures_.best(tile.key, frame_, [&](const TextureDetail& t) {
-    return fits(t, variant) ? 0 : -1;
+    return fits(t, variant) && (any_shading || t.shading == shading_) ? 0 : -1;
   }) != nullptr;
 }
 
 const std::string* TileStreamer::failure(const lod::TileKey& tile) const {
   const auto at = failures_.find(tile);
   return at == failures_.end() ? nullptr : &at->second;
+}
+
+const std::string* TileStreamer::coarse_colours(const lod::TileKey& tile) const {
+  const auto at = coarse_colours_.find(tile);
+  return at == coarse_colours_.end() ? nullptr : &at->second;
 }
 
 const GpuMesh* TileStreamer::mesh(const lod::SelectedTile& tile, const TileNeed& need) {
@@ -236,6 +245,10 @@ void TileStreamer::upload(Pager::Loaded page) {
     case PageKind::kTexture:
       if (key.shading->flat != shading_->flat || !gl::is_textured(key.tile, *planet_, material_)) return;
       textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame_);
+      if (const std::string& why = page.value.coarse_because; !why.empty()) {
+        if (coarse_colours_.emplace(key.tile, why).second && failures_.count(key.tile) == 0)
+          new_failures_.push_back(why);
+      }
       break;
     case PageKind::kGround:
       if (key.exaggeration != shading_->exaggeration) return;

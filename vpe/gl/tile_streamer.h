@@ -70,8 +70,13 @@ class TileStreamer {
   bool is_drawable(const lod::TileInfo& tile, int variant);
   // Returns false once loading one of the tile's pages has failed.
   bool is_readable(const lod::TileKey& tile) const { return failures_.count(tile) == 0; }
+  // Returns true if no tile has failed yet.
+  bool is_all_readable() const { return failures_.empty(); }
   // Returns the reason why a tile cannot be read, or null.
   const std::string* failure(const lod::TileKey& tile) const;
+
+  // Returns the reason why a tile has coarser colours than it needs, or null.
+  const std::string* coarse_colours(const lod::TileKey& tile) const;
 
   // Returns the mesh of a variant, with the origin and charts of `need` if there is one, or null.
   const GpuMesh* mesh(const lod::SelectedTile& tile, const TileNeed& need);
@@ -152,6 +157,7 @@ class TileStreamer {
   bool any_failed_ = false;  // when the requests began
 
   std::unordered_map<lod::TileKey, std::string, lod::TileKeyHash> failures_;
+  std::unordered_map<lod::TileKey, std::string, lod::TileKeyHash> coarse_colours_;
   std::vector<std::string> new_failures_;
   std::int64_t uploaded_ = 0;
   std::int64_t evicted_ = 0;

@@ -1,7 +1,6 @@
 #include "vpe/voxel/frame_prefetcher.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <system_error>
 
@@ -19,12 +18,6 @@ constexpr std::size_t kRangeDivisor = 8;
 // Strips that an image is read in. The filled budget is checked after each of them.
 constexpr int kStrips = 4;
 constexpr std::size_t kMostUpcoming = 3;
-
-bool same_options(const RangeOptions& a, const RangeOptions& b) {
-  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
-  return bits(a.exaggeration) == bits(b.exaggeration) && bits(a.cell_px) == bits(b.cell_px) &&
-         a.method == b.method;
-}
 
 std::size_t pixels_of(const core::View& view) {
   const glm::ivec2 size = core::drawn_size(view);
@@ -119,7 +112,8 @@ std::optional<ColumnWalk::Usage> FramePrefetcher::take(const core::View& view, c
     std::unique_lock lock(mutex_);
     const auto is_cast = [this] { return job_->state == State::kCast; };
     if (job_ && job_->next && same_view(job_->next->view, view) &&
-        same_options(range_options(*job_->next), options) && (job_->state == State::kCasting || is_cast())) {
+        range_options(*job_->next, planet_radius_m()) == options &&
+        (job_->state == State::kCasting || is_cast())) {
       job_->background_pool.promote();
       changed_.wait(lock, [&] { return !working_; });
       if (is_cast()) {
@@ -172,14 +166,15 @@ void FramePrefetcher::work(Job& job) {
     job.state = State::kCasting;
   }
   range_m_.resize(pixels_of(job.next->view));
-  job.usage = caster_.cast(job.next->view, range_options(*job.next), job.background_pool, range_m_, sectors_);
+  job.usage = caster_.cast(job.next->view, range_options(*job.next, planet_radius_m()), job.background_pool,
+                           range_m_, sectors_);
   if (job.background_pool.is_stopped()) return;
   const std::lock_guard lock(mutex_);
   job.state = State::kCast;
 }
 
 bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const core::View& view) {
-  RangeOptions options = range_options(request);
+  RangeOptions options = range_options(request, planet_radius_m());
   if (options.method != RangeOptions::Method::kColumns) return false;
   options.cell_px /= kDownsampling;
   const HeightGridStore& store = caster_.store();

@@ -5,8 +5,8 @@
 // It stands beside the pipeline RangeCaster -> ImagePainter (ray_renderer.h): it runs the first of them early.
 //
 // Typical usage, by a renderer that draws `request` and then request.paging.next:
-//   std::optional<ColumnWalk::Usage> usage = prefetcher.take(request.view, range_options(request), range_m);
-//   if (!usage) usage = caster.cast(request.view, range_options(request), pool, range_m);
+//   std::optional<ColumnWalk::Usage> usage = prefetcher.take(request.view, range_options(request, radius_m), range_m);
+//   if (!usage) usage = caster.cast(request.view, range_options(request, radius_m), pool, range_m);
 //   prefetcher.begin(request);  // works on the next frame while this one is painted
 #pragma once
 
@@ -70,6 +70,7 @@ class FramePrefetcher {
   // Reads the tiles of a view. Returns false if no further views are to be read.
   bool read(Job& job, const core::DrawRequest& request, const core::View& view);
   bool can_cast(const core::DrawRequest& next) const;
+  double planet_radius_m() const { return caster_.surface().planet_radius_m(); }
 
   const RangeCaster& caster_;
   const ImagePainter& painter_;

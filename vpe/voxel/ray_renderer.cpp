@@ -11,6 +11,9 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "vpe/base/parallel.h"
@@ -19,8 +22,11 @@
 #include "vpe/core/below_ground.h"
 #include "vpe/core/image/edge_filter.h"
 #include "vpe/voxel/cast/range_caster.h"
+#include "vpe/voxel/cast/tile_fallbacks.h"
+#include "vpe/voxel/downsampled_view.h"
 #include "vpe/voxel/frame_prefetcher.h"
 #include "vpe/voxel/paint/image_painter.h"
+#include "vpe/voxel/tile_loader.h"
 
 namespace vpe::voxel {
 
@@ -36,6 +42,8 @@ double ms_since(Clock::time_point start) {
 constexpr std::size_t kBytesOfSamples = 51;
 constexpr double kCastShare = 0.6;
 constexpr double kPaintShare = 0.4;
+// Upcoming views of an image that may not wait. Each takes a thousandth of its rays.
+constexpr std::size_t kMostExpected = 3;
 constexpr std::size_t kMostKeptPixels = std::size_t{1} << 24;
 
 class RayRenderer : public core::Renderer {
@@ -46,7 +54,8 @@ class RayRenderer : public core::Renderer {
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads),
         max_image_bytes_(options.max_image_bytes),
-        prefetcher_(caster_, painter_, pool_, options.memory_bytes) {}
+        prefetcher_(caster_, painter_, pool_, options.memory_bytes),
+        loader_(caster_, painter_, options.threads) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override;
 
@@ -55,16 +64,30 @@ class RayRenderer : public core::Renderer {
     return static_cast<std::size_t>(part * static_cast<double>(options.memory_bytes));
   }
 
+  // Holds what belongs to one image: how it may read, what it used and what it lacked.
+  struct Image {
+    Image(const HeightGridStore& store, const core::DrawRequest& request, const ReadingRule& rule)
+        : fallbacks(store, request.settings.exaggeration, rule), reading{rule} {}
+    TileFallbacks fallbacks;
+    ImagePainter::Reading reading;
+    ColumnWalk::Usage usage;
+    std::int64_t nodata_pixels = 0;
+  };
+
   core::DrawResult draw_image(const core::DrawRequest& request);
+  ReadingRule reading_rule(const core::PagingRequest& paging, bool reads_all) const;
+  bool is_below_ground(const core::DrawRequest& request) const;
   void check_size(const core::DrawRequest& request) const;
   bool has_room_for_next() const;
-  ColumnWalk::Usage cast(const core::DrawRequest& request, std::vector<float>& range_m);
-  ColumnWalk::Usage cast_in_bands(const core::View& view, const RangeOptions& options,
-                                  std::span<float> range_m);
-  ColumnWalk::Usage draw_samples(const core::DrawRequest& request, core::Frame& frame,
-                                 std::int64_t& nodata_pixels);
+  void cast(const core::DrawRequest& request, std::vector<float>& range_m, Image& image);
+  ColumnWalk::Usage cast_in_bands(const core::View& view, const RangeOptions& options, std::span<float> range_m,
+                                  TileFallbacks& fallbacks);
+  void draw_samples(const core::DrawRequest& request, core::Frame& frame, Image& image);
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
-                            std::int64_t nodata_pixels, const ColumnWalk::Usage& usage) const;
+                            const Image& image) const;
+  // States what the image lacked, and lets the loader load it.
+  void finish_paging(const core::DrawRequest& request, const Image& image, core::DrawResult& result);
+  std::vector<TileLoader::Expected> expected_tiles(const core::DrawRequest& request);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   RangeCaster caster_;
@@ -72,6 +95,9 @@ class RayRenderer : public core::Renderer {
   base::ThreadPool pool_;
   std::size_t max_image_bytes_;
   FramePrefetcher prefetcher_;
+  TileLoader loader_;
+  SectorCaster hint_sectors_;
+  std::unordered_set<std::string> reported_;  // failures
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
   std::vector<float> inverse_depth_;
@@ -106,7 +132,8 @@ core::View shifted(core::View view, const glm::dvec2& offset) {
 }
 
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
-                                       std::int64_t nodata_pixels, const ColumnWalk::Usage& usage) const {
+                                       const Image& image) const {
+  const ColumnWalk::Usage& usage = image.usage;
   core::Certificate c;
   // A range that is off by d / sin(incidence) puts the point d beside its facet, so d / cos(slope) above it.
   c.quantisation_px = caster_.range_error(request.view, request.settings.exaggeration) *
@@ -117,8 +144,8 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
   if (request.want_colour) {
-    c.nodata_share =
-        static_cast<double>(nodata_pixels) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
+    c.nodata_share = static_cast<double>(image.nodata_pixels) /
+                     static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
   }
   const paging::PlanetMeta& meta = planet_->meta();
   core::state_data(c,
@@ -133,31 +160,30 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
 }
 
 // Draws a complete image for each sample and takes their mean. The range is that of the pixel's centre.
-ColumnWalk::Usage RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame,
-                                            std::int64_t& nodata_pixels) {
-  const RangeOptions options = range_options(request);
+void RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame, Image& image) {
+  const RangeOptions options = range_options(request, planet_->radius_m());
   const std::span<const glm::dvec2> offsets = sample_offsets(request.settings.samples);
   std::vector<glm::ivec3> sum(frame.colour.size(), glm::ivec3(0));
   std::vector<float> range(frame.range_m.size());
   core::DrawRequest moved = request;
-  ColumnWalk::Usage usage;
-  nodata_pixels = 0;
+  LackingTiles lacking;
   for (const glm::dvec2& offset : offsets) {
     moved.view = shifted(request.view, offset);
-    usage.add(cast_in_bands(moved.view, options, range));
-    nodata_pixels += painter_.paint(moved, range, frame.colour, {}, pool_);
+    image.usage.add(cast_in_bands(moved.view, options, range, image.fallbacks));
+    image.nodata_pixels += painter_.paint(moved, range, frame.colour, {}, pool_, &image.reading);
+    lacking.colours.insert(lacking.colours.end(), image.reading.absent.begin(), image.reading.absent.end());
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  if (request.want_range) usage.add(cast_in_bands(request.view, options, frame.range_m));
-  prefetcher_.begin(request);
+  image.reading.absent = std::move(lacking.colours);
+  if (request.want_range) image.usage.add(cast_in_bands(request.view, options, frame.range_m, image.fallbacks));
+  if (request.paging.wait) prefetcher_.begin(request);
   const int n = static_cast<int>(offsets.size());
-  nodata_pixels /= n;
+  image.nodata_pixels /= n;
   for (std::size_t k = 0; k < sum.size(); ++k) {
     const auto mean = [&](int s) { return static_cast<std::uint8_t>((s + n / 2) / n); };
     frame.colour[k] = {mean(sum[k].x), mean(sum[k].y), mean(sum[k].z)};
   }
-  return usage;
 }
 
 // Returns true if the caches have room for the tiles of two images at once.
@@ -170,37 +196,88 @@ bool RayRenderer::has_room_for_next() const {
          0.5 * static_cast<double>(caster_.store().budget_bytes());
 }
 
-// Casts the view, or takes its ranges from the prefetcher, and lets the prefetcher start on the next one.
 // The samples of columns take several times the memory of the image, so a large image is cast in bands of rows.
 ColumnWalk::Usage RayRenderer::cast_in_bands(const core::View& view, const RangeOptions& options,
-                                             std::span<float> range_m) {
+                                             std::span<float> range_m, TileFallbacks& fallbacks) {
   constexpr std::size_t kLeastRows = 64;
   const core::SubRectangle whole = core::drawn_part(view);
   const auto width = static_cast<std::size_t>(whole.width);
   const auto height = static_cast<std::size_t>(whole.height);
   const std::size_t most = max_image_bytes_ / 2 / kBytesOfSamples / std::max<std::size_t>(1, width);
   const std::size_t rows = std::max(kLeastRows, most);
-  if (rows >= height) return caster_.cast(view, options, pool_, range_m);
+  if (rows >= height) return caster_.cast(view, options, pool_, range_m, &fallbacks);
   ColumnWalk::Usage usage;
   for (std::size_t y = 0; y < height; y += rows) {
     const std::size_t count = std::min(rows, height - y);
     core::View band = view;
     band.part = {whole.x, whole.y + static_cast<int>(y), whole.width, static_cast<int>(count)};
-    usage.add(caster_.cast(band, options, pool_, range_m.subspan(y * width, count * width)));
+    usage.add(caster_.cast(band, options, pool_, range_m.subspan(y * width, count * width), &fallbacks));
   }
   return usage;
 }
 
-ColumnWalk::Usage RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& range_m) {
-  const RangeOptions options = range_options(request);
+// Casts the view, or takes its ranges from the prefetcher, and lets the prefetcher start on the next one.
+void RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& range_m, Image& image) {
+  const RangeOptions options = range_options(request, planet_->radius_m());
+  if (!request.paging.wait) {
+    image.usage = cast_in_bands(request.view, options, range_m, image.fallbacks);
+    return;
+  }
   std::optional<ColumnWalk::Usage> usage = prefetcher_.take(request.view, options, range_m);
   const bool early = has_room_for_next();
   if (early) prefetcher_.begin(request);
-  if (!usage) usage = cast_in_bands(request.view, options, range_m);
+  if (!usage) usage = cast_in_bands(request.view, options, range_m, image.fallbacks);
   tiles_used_ = 0;
   for (const int n : usage->tiles_by_level) tiles_used_ += n;
   if (!early) prefetcher_.begin(request);
-  return *usage;
+  image.usage = std::move(*usage);
+}
+
+ReadingRule RayRenderer::reading_rule(const core::PagingRequest& paging, bool reads_all) const {
+  if (reads_all) return ReadingRule::always();
+  if (!paging.wait) return ReadingRule::never();
+  return {paging.timeout_s, pool_.threads()};
+}
+
+// Finds what upcoming views will lack, with few rays.
+std::vector<TileLoader::Expected> RayRenderer::expected_tiles(const core::DrawRequest& request) {
+  std::vector<TileLoader::Expected> out;
+  RangeOptions options = range_options(request, planet_->radius_m());
+  if (options.method != RangeOptions::Method::kColumns) return out;
+  options.cell_px /= FramePrefetcher::kDownsampling;
+  for (std::size_t n = 0; n < std::min(request.paging.upcoming.size(), kMostExpected); ++n) {
+    core::DrawRequest later = request;
+    later.view = request.paging.upcoming[n];
+    if (!core::check(later.view).empty()) continue;
+    const core::View few = downsampled_view(later.view, FramePrefetcher::kDownsampling);
+    const glm::ivec2 size = core::drawn_size(few);
+    std::vector<float> range_m(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    TileFallbacks fallbacks(caster_.store(), options.exaggeration, ReadingRule::never(),
+                            TileFallbacks::Purpose::kHint);
+    caster_.cast(few, options, pool_, range_m, hint_sectors_, &fallbacks);
+    ImagePainter::Reading reading{ReadingRule::never()};
+    if (request.want_colour) painter_.read_ahead(later, few, range_m, pool_, &reading);
+    out.push_back({later.view, {options.exaggeration, fallbacks.absent(), std::move(reading.absent)}});
+  }
+  return out;
+}
+
+void RayRenderer::finish_paging(const core::DrawRequest& request, const Image& image,
+                                core::DrawResult& result) {
+  const LackingTiles lacking{request.settings.exaggeration, image.fallbacks.absent(), image.reading.absent};
+  result.missing = missing_tiles(planet_->tree(), lacking);
+  if (!image.reading.failure_of_points.empty())
+    result.missing.push_back({"of flat colours", image.reading.failure_of_points, true});
+  for (const core::MissingTile& tile : result.missing) {
+    if (tile.is_unreadable && reported_.insert(tile.why).second) result.failures.push_back(tile.why);
+  }
+  result.stats.tiles_missing = static_cast<int>(result.missing.size());
+  result.stats.tiles_substituted = image.usage.tiles_replaced;
+  result.certificate.tiles_missing = result.stats.tiles_missing;
+  result.certificate.tiles_substituted = result.stats.tiles_substituted;
+  std::vector<TileLoader::Expected> expected;
+  if (!request.paging.wait) expected = expected_tiles(request);
+  result.settled = !loader_.request(request.view, lacking, expected);
 }
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
@@ -226,14 +303,28 @@ void RayRenderer::check_size(const core::DrawRequest& request) const {
                            " or more if the machine has twice that, or a smaller --size");
 }
 
+// The ground is that of the nearest readable tile, as the caster has it.
+bool RayRenderer::is_below_ground(const core::DrawRequest& request) const {
+  const glm::dvec3& camera_m = request.view.camera.position_m;
+  const double distance_m = glm::length(camera_m);
+  if (!(distance_m > 0)) return true;
+  const double exaggeration = request.settings.exaggeration;
+  const lod::TileInfo& below =
+      planet_->tree().deepest(lod::tile_at(mars::chart_point(camera_m), lod::kMaxLevel));
+  if (distance_m > planet_->radius_m() + exaggeration * below.max_height_m) return false;
+  return distance_m < caster_.surface().readable_radius_m(camera_m / distance_m, exaggeration);
+}
+
 core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
   planet_->tree().require_drawable(request.settings.exaggeration);
-  if (caster_.surface().is_below(request.view.camera.position_m, request.settings.exaggeration)) {
+  if (!request.paging.wait) prefetcher_.stop();
+  const bool reads_all = loader_.begin(request);
+  if (is_below_ground(request)) {
     core::DrawResult below;
-    below.certificate = certify(request, below.frame, 0, {});
+    below.certificate = certify(request, below.frame, Image(caster_.store(), request, ReadingRule::never()));
     core::draw_below_ground(request, below);
     return below;
   }
@@ -248,24 +339,24 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   frame.colour.resize(request.want_colour ? pixels : 0);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
-  ColumnWalk::Usage usage;
-  std::int64_t nodata_pixels = 0;
+  Image image(caster_.store(), request, reading_rule(request.paging, reads_all));
   if (!request.want_colour) {
-    usage = cast(request, frame.range_m);
+    cast(request, frame.range_m, image);
   } else if (request.settings.samples > 1) {
-    usage = draw_samples(request, frame, nodata_pixels);
+    draw_samples(request, frame, image);
   } else {
-    usage = cast(request, frame.range_m);
+    cast(request, frame.range_m, image);
     result.stats.select_ms = ms_since(start);
     const bool smooth =
         request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
     inverse_depth_.resize(smooth ? pixels : 0);
-    nodata_pixels = painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_);
+    image.nodata_pixels =
+        painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_, &image.reading);
     if (smooth) core::smooth_edges(frame.colour, inverse_depth_, size.x, size.y, pool_);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
-  result.certificate = certify(request, frame, nodata_pixels, usage);
-  result.stats.tiles_by_level = usage.tiles_by_level;
+  result.certificate = certify(request, frame, image);
+  result.stats.tiles_by_level = image.usage.tiles_by_level;
   result.stats.tiles_drawn = result.certificate.tiles_drawn;
   if (!request.want_range) range_m_.swap(frame.range_m);
   // The buffers of a poster are too large to keep.
@@ -277,51 +368,11 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   result.stats.bytes_resident = static_cast<std::int64_t>(
       caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
       (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + planet_->tree().bytes());
-  result.settled = true;
+  finish_paging(request, image, result);
   return result;
 }
 
 }  // namespace
-
-RangeOptions range_options(const core::DrawRequest& request) {
-  RangeOptions options;
-  options.exaggeration = request.settings.exaggeration;
-  if (request.settings.ray_mode == core::RayMode::kReference) options.method = RangeOptions::Method::kReference;
-  // Coarsening, the price of speed, acts on the cells.
-  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
-    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
-  return options;
-}
-
-std::size_t ray_image_bytes(std::int64_t pixels, int samples) {
-  // Colour, range and inverse depth, and copies while the image is smoothed and written.
-  constexpr std::size_t kBytesPerPixel = 16;
-  constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
-  return static_cast<std::size_t>(pixels) * (kBytesPerPixel + (samples > 1 ? kBytesPerSum : 0));
-}
-
-std::string why_not(const core::DrawRequest& request) {
-  const core::Mode mode = request.settings.mode;
-  if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
-    return "the ray backend has no triangles to show: use --backend polygon for this mode";
-  const core::Inspect inspect = request.settings.inspect;
-  if (request.cull_view || inspect == core::Inspect::kBorders || inspect == core::Inspect::kLevels)
-    return "the ray backend draws no tiles: --cull-from, inspect=borders and inspect=levels show those of --backend "
-           "polygon";
-  if (const std::string_view control = level_control(request); !control.empty())
-    return "the ray backend has no level control but rays.cell: " + std::string(control) +
-           " acts with --backend polygon only";
-  return {};
-}
-
-std::string_view level_control(const core::DrawRequest& request) {
-  const core::SettingsValues& values = request.settings;
-  if (values.lod_triangles != 0) return "lod.triangles";
-  if (values.lod_centre_weight != 0) return "lod.centre.weight";
-  if (values.lod_metric != core::SettingsValues().lod_metric) return "lod.metric=distance";
-  if (!request.interest.empty() && values.lod_interest_weight != 0) return "regions of interest";
-  return {};
-}
 
 std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options) {

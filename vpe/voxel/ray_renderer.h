@@ -22,18 +22,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
+#include "vpe/voxel/ray_request.h"
 
 namespace vpe::voxel {
-
-struct RangeOptions;  // cast/range_caster.h
 
 struct RayOptions {
   // Budget for decoded ground and its colours: 0.6 of it for casting, 0.4 for painting. Smaller: tiles are read
@@ -47,21 +43,6 @@ struct RayOptions {
   std::size_t max_image_bytes = std::numeric_limits<std::size_t>::max();
 };
 
-// Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed and written.
-// The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in bands.
-std::size_t ray_image_bytes(std::int64_t pixels, int samples);
-
-// Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
-// markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.
-std::string why_not(const core::DrawRequest& request);
-
-// Returns the level control of a request that only triangles have, for messages; "" if there is none.
-std::string_view level_control(const core::DrawRequest& request);
-
-// Returns how the ranges of a request are cast: the mode of the settings, and cells that grow with the
-// request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
-RangeOptions range_options(const core::DrawRequest& request);
-
 // Returns a renderer of every projection, at any pitch and roll.
 //
 // Geometry: with rays.mode=exact the geometric error is 0: a pixel shows the reference surface as exaggerated,
@@ -74,16 +55,22 @@ RangeOptions range_options(const core::DrawRequest& request);
 // not.)
 //
 // Certificate: quantisation_px is the rounding of ranges. tolerance_px repeats lod.tolerance, which the polygon
-// backend uses and this one does not: it says nothing about the image. The choice of tiles does not depend on
-// lod.* or on regions of interest.
+// backend uses and this one does not: it says nothing about the image. In multires the choice of tiles depends
+// on the weights, functions and tables of lod.* and on regions of interest as that of triangles does.
 //
 // A request that names the next one (DrawRequest::paging.next, a shared pointer to another request) lets the
 // renderer start it early. The next request's own paging.next is ignored, so requests never form a chain here.
 //
 // Images do not depend on the number of threads or on what was drawn before. One thread at a time may call
-// draw(). Its tiles are read within the frame, whatever PagingRequest::wait says, so results are always
-// settled. draw() throws std::runtime_error for a view or an appearance that it cannot draw, and
-// paging::PlanetError for unreadable tiles.
+// draw().
+//
+// Paging: a frame that waits reads its tiles while it casts, on the casting threads, until its time-out has been
+// spent with reading. One that does not wait draws what is held, and loader threads of the renderer's own read
+// the rest for the frames after it. It reads itself: the tiles below the camera; a root where nothing is held;
+// ground that is coloured pixel by pixel (image_painter.h); and all of an image that the memory cannot hold at
+// once. A tile that is not there, or cannot be read, is cast and painted with the posts of its nearest ancestor
+// that is; the certificate's bounds include it. draw() throws std::runtime_error for a view or an appearance
+// that it cannot draw, and paging::PlanetError where not even a root can be read.
 std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options = {});
 

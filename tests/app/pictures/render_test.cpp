@@ -106,8 +106,8 @@ TEST_F(Render, WithoutOpenGLRaysDrawWhatNobodyNamed) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(says(result.err, {"drawn by rays, as there is no OpenGL"})) << result.err;
   EXPECT_TRUE(exists("c.png"));
-  for (const Words& named : {Words{"--backend", "polygon"}, Words{"--set", "mode=wireframe"},
-                             Words{"--explain-lod", "e.json"}, Words{"--allow-incomplete"}}) {
+  for (const Words& named :
+       {Words{"--backend", "polygon"}, Words{"--set", "mode=wireframe"}, Words{"--explain-lod", "e.json"}}) {
     Words words = down;
     words.insert(words.end(), named.begin(), named.end());
     EXPECT_EQ(without_gl(words).exit_code, 1) << named.front();
@@ -123,18 +123,31 @@ TEST_F(Render, WithoutOpenGLRaysDrawWhatNobodyNamed) {
 
 TEST_F(Render, RaysRefuseWhatTheyCannotDo) {
   const std::string pose = "-74,-13.5,60000,20,-20,0";
-  for (const Words& words : {Words{"--explain-lod", "e.json"}, Words{"--allow-incomplete"},
-                             Words{"--interest", "-74,-13.5,1e5,2"}, Words{"--set", "lod.metric=distance"},
-                             Words{"--set", "lod.centre.weight=3"}, Words{"--set", "lod.triangles=10"}}) {
+  for (const Words& words : {Words{"--explain-lod", "e.json"}, Words{"--interest", "-74,-13.5,1e5,2"},
+                             Words{"--set", "lod.metric=distance"}, Words{"--set", "lod.centre.weight=3"},
+                             Words{"--set", "lod.triangles=10"}}) {
     Words all{"--backend", "ray"};
     all.insert(all.end(), words.begin(), words.end());
     const Result result = render(all, pose, "no.png");
     EXPECT_NE(result.exit_code, 0) << words.back();
     EXPECT_TRUE(says(result.err, {"polygon"}) || says(result.err, {"triangles"})) << result.err;
     EXPECT_FALSE(exists("no.png")) << words.back();
-    // Nobody named rays: triangles do it.
+    // Nobody named rays: triangles do it, or rays in another mode.
     const Result automatic = render(words, pose, "yes.png");
     EXPECT_EQ(automatic.exit_code, 0) << automatic.err;
+  }
+}
+
+TEST_F(Render, RaysHaveLevelControlInMultires) {
+  const std::string pose = "-74,-13.5,60000,20,-20,0";
+  const Words rays{"--backend", "ray", "--set", "rays.mode=multires", "--set", "rays.cell=8"};
+  EXPECT_EQ(render(rays, pose, "plain.png").exit_code, 0);
+  for (const Words& words : {Words{"--interest", "-74,-13.5,1e6,4"}, Words{"--set", "lod.centre.weight=3"}}) {
+    Words all = rays;
+    all.insert(all.end(), words.begin(), words.end());
+    const Result result = render(all, pose, "controlled.png");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(read_text(dir_ / "controlled.png"), read_text(dir_ / "plain.png")) << words.back();
   }
 }
 

@@ -231,7 +231,7 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   if (image.backend) return {plan_of({*image.backend, base})};
   std::vector<PlannedFilm> films{plan_of({core::Backend::kPolygon, base})};
   const FilmPlan& plan = films.front().plan;
-  if (!film_suits_rays(plan, flight, base) || image.allow_incomplete) return films;
+  if (!film_suits_rays(plan, flight, base)) return films;
   if (const auto problem = opengl_problem()) {
     // Frames that triangles made elsewhere are found all the same.
     note_rays_instead(*problem, common.quiet);

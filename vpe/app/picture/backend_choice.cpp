@@ -34,6 +34,16 @@ bool suits_rays(const core::DrawRequest& request) {
   return voxel::why_not(request).empty() && values.shading == defaults.shading;
 }
 
+namespace {
+
+core::DrawRequest with_rays_of(core::DrawRequest request, const core::Settings& settings) {
+  request.settings.ray_mode = settings.values().ray_mode;
+  request.settings.ray_cell_px = settings.values().ray_cell_px;
+  return request;
+}
+
+}  // namespace
+
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
                              std::span<const core::DrawRequest> images, double radius_m, bool has_gpu) {
   if (options.backend) return {*options.backend, settings};
@@ -41,21 +51,23 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
     return glm::length(request.view.camera.position_m) < (1 + kFar) * radius_m &&
            core::reaches_horizon(request.view, radius_m);
   });
-  const bool is_rays = !has_gpu && !options.allow_incomplete &&
-                       2 * static_cast<std::size_t>(for_rays) >= images.size() &&
-                       std::all_of(images.begin(), images.end(), suits_rays);
+  const core::Settings for_ray_images = within_tolerance(settings, options);
+  const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= images.size() &&
+                       std::all_of(images.begin(), images.end(), [&](const core::DrawRequest& request) {
+                         return suits_rays(with_rays_of(request, for_ray_images));
+                       });
   if (!is_rays) return {core::Backend::kPolygon, settings};
-  return {core::Backend::kRay, within_tolerance(settings, options)};
+  return {core::Backend::kRay, for_ray_images};
 }
 
 std::optional<BackendChoice> rays_instead(const RenderOptions& options, const core::Settings& settings,
                                           std::span<const core::DrawRequest> images) {
-  const bool suits = !options.allow_incomplete &&
-                     std::all_of(images.begin(), images.end(), [](const core::DrawRequest& request) {
-                       return voxel::why_not(request).empty();
-                     });
+  const core::Settings for_ray_images = within_tolerance(settings, options);
+  const bool suits = std::all_of(images.begin(), images.end(), [&](const core::DrawRequest& request) {
+    return voxel::why_not(with_rays_of(request, for_ray_images)).empty();
+  });
   if (!suits) return std::nullopt;
-  return BackendChoice{core::Backend::kRay, within_tolerance(settings, options)};
+  return BackendChoice{core::Backend::kRay, for_ray_images};
 }
 
 void note_rays_instead(const std::string& reason, bool quiet) {

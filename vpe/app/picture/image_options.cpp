@@ -124,8 +124,6 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
   if (!options.backend) throw std::logic_error("make_renderer: no backend was chosen");
-  if (*options.backend == core::Backend::kRay && options.allow_incomplete)
-    throw UsageError("--allow-incomplete: the ray backend draws complete images only; use --backend polygon");
   if (*options.backend == core::Backend::kRay)
     return voxel::make_ray_renderer(std::move(planet),
                                     {.memory_bytes = memory_bytes(common),
@@ -161,8 +159,9 @@ void require_complete(const RenderOptions& options, const core::DrawResult& resu
 void note_limited_by_memory(const RenderOptions& options, const Common& common,
                             const core::DrawRequest& request, const core::DrawResult& result) {
   const core::Certificate& c = result.certificate;
-  if (*options.backend != core::Backend::kPolygon || !voxel::level_control(request).empty() ||
-      request.coarsening > 1 || c.tiles_missing > 0 || c.tiles_substituted > 0)
+  if (*options.backend != core::Backend::kPolygon || !voxel::refused_control(request).empty() ||
+      !voxel::multires_control(request).empty() || request.coarsening > 1 || c.tiles_missing > 0 ||
+      c.tiles_substituted > 0)
     return;
   // Finest tiles have meshes without error, so nothing else keeps tiles from the tolerance.
   if (!(c.screen_space_error_px > c.tolerance_px)) return;

@@ -17,9 +17,10 @@ void Scratch::prepare(int rows, int group_count) {
   }
 }
 
-ScratchPool make_scratch_pool(const HeightGridStore& store, double exaggeration) {
-  return ScratchPool([&store, exaggeration] { return std::make_unique<Scratch>(store, exaggeration); },
-                     {.discard_on_exception = true});
+ScratchPool make_scratch_pool(const HeightGridStore& store, double exaggeration, TileFallbacks* fallbacks) {
+  return ScratchPool(
+      [&store, exaggeration, fallbacks] { return std::make_unique<Scratch>(store, exaggeration, fallbacks); },
+      {.discard_on_exception = true});
 }
 
 void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches,

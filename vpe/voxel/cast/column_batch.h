@@ -43,7 +43,8 @@ struct Scratch {
     float lane[kMaxLanes];
   };
 
-  Scratch(const HeightGridStore& store, double exaggeration) : tiles(store, exaggeration) {}
+  Scratch(const HeightGridStore& store, double exaggeration, TileFallbacks* fallbacks)
+      : tiles(store, exaggeration, fallbacks) {}
 
   // Provides buffers of at least `rows` rows for each of `group_count` groups. `group_count` must be the same
   // in every call.
@@ -60,9 +61,10 @@ struct Scratch {
 // Lends scratch memory to the threads of one image.
 using ScratchPool = base::ObjectPool<Scratch>;
 
-// Returns a pool for an image of this exaggeration. `store` must outlive it. Scratch memory that an exception
-// has interrupted is discarded.
-ScratchPool make_scratch_pool(const HeightGridStore& store, double exaggeration);
+// Returns a pool for an image of this exaggeration. `store` and `fallbacks` must outlive it. Scratch memory that
+// an exception has interrupted is discarded.
+ScratchPool make_scratch_pool(const HeightGridStore& store, double exaggeration,
+                              TileFallbacks* fallbacks = nullptr);
 
 // Casts all columns of all batches; columns of different batches run side by side. Throws paging::PlanetError
 // for tiles that cannot be read.

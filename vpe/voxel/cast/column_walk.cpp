@@ -12,11 +12,6 @@ namespace vpe::voxel {
 
 namespace {
 
-// Bits of ends_.
-constexpr std::uint8_t kKnown = 1;
-constexpr std::uint8_t kYes = 2;
-constexpr std::uint8_t kUsed = 4;
-
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Bounds of a quadtree cell in the chart of its face.
@@ -27,140 +22,7 @@ struct Cell {
   double v1;
 };
 
-// Returns the steepest slope from the camera to anything within `radius_m` of the centre at central angles
-// [near, far].
-double steepest(double radius_m, double distance_m, double near, double far) {
-  const auto slope = [&](double angle) {
-    const double sine = std::sin(angle);
-    const double rise = radius_m * std::cos(angle) - distance_m;
-    if (sine <= 0.0) return rise >= 0.0 ? kInfinite : -kInfinite;
-    return rise / (radius_m * sine);
-  };
-  if (radius_m >= distance_m) return slope(std::max(0.0, near));
-  const double limb = std::acos(radius_m / distance_m);
-  return slope(std::clamp(limb, std::max(0.0, near), std::min(far, std::acos(-1.0))));
-}
-
 }  // namespace
-
-ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration,
-                       const CellRule& rule)
-    : surface_(surface),
-      tree_(surface.planet().tree()),
-      camera_(camera),
-      exaggeration_(exaggeration),
-      highest_m_(camera.radius_m + exaggeration * (surface.planet().meta().highest_radius_m - camera.radius_m)),
-      rule_(rule),
-      bounds_(tree_.size()),
-      ends_(tree_.size()) {
-  for (std::atomic<float>& bound : bounds_)
-    bound.store(std::numeric_limits<float>::quiet_NaN(), std::memory_order_relaxed);
-}
-
-ColumnWalk::Angles ColumnWalk::angles(lod::TileTree::Index tile) const {
-  const lod::TileKey& key = tree_[tile].key;
-  const auto line = [&](std::int32_t k) { return mars::face_line(k, key.level); };
-  const double u[2] = {line(key.i), line(key.i + 1)};
-  const double v[2] = {line(key.j), line(key.j + 1)};
-  // Bounds the tile by a cone.
-  const glm::dvec3 axis = mars::chart_direction(key.face, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
-  double cosine = 1;
-  for (double x : u) {
-    for (double y : v) cosine = std::min(cosine, glm::dot(axis, mars::chart_direction(key.face, x, y)));
-  }
-  constexpr double kSlack = 1e-9;
-  const double opening = std::acos(std::clamp(cosine, -1.0, 1.0)) + kSlack;
-  const double angle = std::atan2(glm::length(glm::cross(camera_.up, axis)), glm::dot(camera_.up, axis));
-  return {std::max(0.0, angle - opening), angle + opening};
-}
-
-float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
-  const float known = bounds_[tile].load(std::memory_order_relaxed);
-  if (!std::isnan(known)) return known;
-  const Angles at = angles(tile);
-  const double top = (camera_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
-  const double bound = steepest(top, camera_.distance_m, at.near, at.far);
-  // Rounded upward, to stay a bound.
-  const float rounded = std::nextafter(static_cast<float>(bound), std::numeric_limits<float>::infinity());
-  bounds_[tile].store(rounded, std::memory_order_relaxed);
-  return rounded;
-}
-
-// The posts lie in a part of a spherical layer, whose nearest point bounds their distance.
-double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
-  const lod::TileInfo& info = tree_[tile];
-  const double low = camera_.radius_m + exaggeration_ * info.min_height_m;
-  const double high = camera_.radius_m + exaggeration_ * info.max_height_m;
-  const double along = camera_.distance_m * std::cos(angles(tile).near);
-  const double radius = std::clamp(along, low, high);
-  return std::sqrt(
-      std::max(0.0, camera_.distance_m * camera_.distance_m + radius * radius - 2 * radius * along));
-}
-
-double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
-  const lod::TileInfo& info = tree_[tile];
-  if (!info.posts_terms.known()) return kInfinite;
-  return tree_.geometric_error_m(info, info.posts_terms.terms(), exaggeration_);
-}
-
-double ColumnWalk::in_image_px(double geometric_error_m, lod::TileTree::Index tile) const {
-  return geometric_error_m * rule_.focal_px / least_distance_m(tile);
-}
-
-bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
-  const lod::TileInfo& info = tree_[tile];
-  if (!info.has_children) return true;
-  if (!(rule_.cell_px > 0)) return false;
-  const unsigned known = ends_[tile].load(std::memory_order_relaxed);
-  if ((known & kKnown) != 0) return (known & kYes) != 0;
-  const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
-  const bool fine = info.posts_terms.known()
-                        ? in_image_px(measured_error_m(tile), tile) <= rule_.cell_px
-                        : spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
-  ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
-  return fine;
-}
-
-void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
-  if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0)
-    ends_[tile].fetch_or(kUsed, std::memory_order_relaxed);
-}
-
-ColumnWalk::Usage ColumnWalk::usage() const {
-  Usage usage;
-  for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
-    if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
-    const lod::TileInfo& info = tree_[tile];
-    const auto level = static_cast<std::size_t>(info.key.level);
-    if (usage.tiles_by_level.size() <= level) usage.tiles_by_level.resize(level + 1);
-    ++usage.tiles_by_level[level];
-    usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(info, exaggeration_));
-    if (!info.has_children) continue;
-    double geometric_error_m = measured_error_m(tile);
-    if (!std::isfinite(geometric_error_m)) {
-      // The tile's posts lie on the reference surface. Any place of a cell is at most a cell's side away from a
-      // post (half a diagonal from the nearest). Neither the surface nor the facet is steeper than the
-      // surface's steepest facet, and warped lines are up to sqrt(2) times the nominal spacing apart.
-      const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
-      const double reach = std::sqrt(2.0) * spacing;
-      const double sagitta = reach * reach / (4 * camera_.radius_m);
-      geometric_error_m =
-          2 * exaggeration_ * info.steepest_slope * reach + sagitta + tree_.edge_shift_m(info, exaggeration_);
-    }
-    usage.geometric_error_m = std::max(usage.geometric_error_m, geometric_error_m);
-    usage.screen_space_error_px = std::max(usage.screen_space_error_px, in_image_px(geometric_error_m, tile));
-  }
-  return usage;
-}
-
-void ColumnWalk::Usage::add(const Usage& other) {
-  tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
-  for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
-    tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
-  screen_space_error_px = std::max(screen_space_error_px, other.screen_space_error_px);
-  geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
-  steepest_slope = std::max(steepest_slope, other.steepest_slope);
-}
 
 // Leads one group over one face after the other.
 class GroupWalk : public HeightGridSource {
@@ -186,10 +48,10 @@ class GroupWalk : public HeightGridSource {
   }
 
   const HeightGridLines<float>& lines(LineFamily family) override {
-    return tiles_.grids(tile_, family).lines(grid_i_, grid_j_);
+    return tiles_.grids(tile_, family)->lines(grid_i_, grid_j_);
   }
   const HeightGridLines<double>& exact_lines(LineFamily family) override {
-    return tiles_.exact_grids(tile_, family).lines(grid_i_, grid_j_);
+    return tiles_.exact_grids(tile_, family)->lines(grid_i_, grid_j_);
   }
 
  private:

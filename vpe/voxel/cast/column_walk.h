@@ -9,6 +9,7 @@
 #include <atomic>
 #include <vector>
 
+#include "lod/control.h"
 #include "lod/tree/tree.h"
 #include "paging/surface/surface.h"
 #include "vpe/voxel/cast/columns.h"
@@ -20,21 +21,27 @@ namespace vpe::voxel {
 // reference surface in the image, wherever they appear (so crests sink by no more than that). Planet files
 // before format 1.2 do not record this error; there, tiles are fine enough whose posts are at most cell_px
 // apart in the image.
+//
+// Level control changes that as it changes the selection of triangles (lod/control.h): with the metric kError a
+// tile's error, or the distance of its posts, counts 2^levels times; with the metric kDistance a tile is fine
+// enough from the wanted level on, whatever its error.
 struct CellRule {
   // Smaller: closer to the reference surface, slower; larger: coarser tiles, fewer to read and walk. 0: the
-  // finest tiles alone, so the reference surface itself.
+  // finest tiles alone, so the reference surface itself; level control has no effect then.
   double cell_px = 0;
-  double focal_px = 1;  // pixels per radian at the image's centre (core::focal_px)
+  double focal_px = 1;                         // pixels per radian at the image's centre (core::focal_px)
+  const lod::LevelControl* control = nullptr;  // null: neutral; must outlive the walk
+  lod::CentreOfView centre = {};
 };
 
 // Holds what all groups of one image share: camera, exaggeration, and the tiles' bounds seen from there.
 // Threads may share it.
 class ColumnWalk {
  public:
-  // Requires a camera above the reference surface: camera.distance_m > camera.ground_m. `surface` must outlive
-  // this.
+  // Requires a camera above the reference surface: camera.distance_m > camera.ground_m. `surface` and `fallbacks`
+  // must outlive this. Without fallbacks every tile is read.
   ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration,
-             const CellRule& rule);
+             const CellRule& rule, TileFallbacks* fallbacks = nullptr);
 
   // Resolves all rows of a group of columns that see ground. `azimuth` holds a vector for each column (unit,
   // body-fixed, normal to camera.up), neighbours in order. Rows, slope coefficients and buffers of `group` must
@@ -44,8 +51,13 @@ class ColumnWalk {
   const ColumnCamera& camera() const { return camera_; }
   const lod::TileTree& tree() const { return tree_; }
 
-  // Returns true if the tile's own posts are cast, because it is fine enough or the finest there.
+  // Returns true if the tile's own posts are cast, because it is fine enough or the finest there; or those of an
+  // ancestor in their place (tile_fallbacks.h).
   bool ends_at(lod::TileTree::Index tile) const;
+  // Counts a tile among those that casts have used.
+  void mark_used(lod::TileTree::Index tile) const;
+  // Returns the tile below the camera that is cast.
+  lod::TileTree::Index below_camera() const;
 
   // Returns the radius of the highest ground, as exaggerated.
   double highest_m() const { return highest_m_; }
@@ -58,6 +70,7 @@ class ColumnWalk {
     double screen_space_error_px = 0;
     double geometric_error_m = 0;  // largest of the tiles
     double steepest_slope = 0;     // bound of the tangent of the slope of the reference surface in the tiles
+    int tiles_replaced = 0;        // cast with an ancestor's posts, or replaced by their children
     // Merges the usage of another image of nearly the same view: takes the larger of both counts of each level,
     // and of both errors.
     void add(const Usage& other);
@@ -78,13 +91,19 @@ class ColumnWalk {
   Angles angles(lod::TileTree::Index tile) const;
   // Returns a lower bound of the distance from the camera to the tile's posts.
   double least_distance_m(lod::TileTree::Index tile) const;
-  void mark_used(lod::TileTree::Index tile) const;
 
-  // Returns the bound of the distance between the tile's posts as a grid and the reference surface; infinite if
-  // the planet file does not record it.
+  // Returns the bound of the distance between the tile's posts as a grid and the reference surface, as the planet
+  // file states it; infinite if the file does not record it.
   double measured_error_m(lod::TileTree::Index tile) const;
+  // Returns the same bound, from the spacing of the posts where the file does not record it.
+  double posts_error_m(lod::TileTree::Index tile) const;
+  // Returns the bound for a tile that is cast with the posts of `source`, an ancestor of it.
+  double fallback_error_m(lod::TileTree::Index tile, lod::TileTree::Index source) const;
+  double reach_m(lod::TileTree::Index tile) const;
   // Returns the largest screen-space error that a geometric error at this tile can cause.
   double in_image_px(double geometric_error_m, lod::TileTree::Index tile) const;
+  // Returns true if the tile is fine enough by the rule, whatever is there.
+  bool is_fine(lod::TileTree::Index tile) const;
 
   // Returns an upper bound of the slope tan(e) of all rays that meet the tile.
   float slope_bound(lod::TileTree::Index tile) const;
@@ -95,8 +114,9 @@ class ColumnWalk {
   double exaggeration_;
   double highest_m_;
   CellRule rule_;
-  // Computed on first use; NaN and 0 before. Threads that compute an entry at the same time store the same
-  // value. ends_ also marks the tiles that were used.
+  TileFallbacks* fallbacks_;
+  // Computed on first use; NaN and 0 before. What is stored first stays. ends_ also marks the tiles that were
+  // used.
   mutable std::vector<std::atomic<float>> bounds_;
   mutable std::vector<std::atomic<std::uint8_t>> ends_;
 };

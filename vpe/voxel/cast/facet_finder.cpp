@@ -45,6 +45,7 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
     return (east ? 1U : 0U) + (north ? 2U : 0U);
   };
   while (!walk_.ends_at(tile)) tile = tree.first_child(tile) + halve();
+  walk_.mark_used(tile);
   const lod::TileKey& key = tree[tile].key;
   const int per_side = grids_per_side(key.level, tree.shape().intervals());
   for (int k = 1; k < per_side; k *= 2) halve();
@@ -66,9 +67,12 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   facets_.exact_lines = nullptr;
   if (exact) {
     facets_.family = LineFamily::kColumns;
-    facets_.exact_lines = &tiles_.exact_grids(tile, facets_.family).lines(i, j);
+    exact_held_ = tiles_.exact_grids(tile, facets_.family);
+    facets_.exact_lines = &exact_held_->lines(i, j);
   } else {
-    facets_.lines = &tiles_.any_grids(tile, facets_.family).lines(i, j);
+    held_ = tiles_.any_grids(tile);
+    facets_.family = held_->family();
+    facets_.lines = &held_->lines(i, j);
   }
   found_ = true;
   return facets_;

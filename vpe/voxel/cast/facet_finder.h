@@ -24,6 +24,8 @@ class FacetFinder : public FacetSource {
   const ColumnWalk& walk_;
   ThreadLocalTiles& tiles_;
   Facets facets_;
+  HeightGridStore::Pointer<float> held_;  // of facets_, as is the next
+  HeightGridStore::Pointer<double> exact_held_;
   bool found_ = false;
 };
 

@@ -68,11 +68,28 @@ struct HeightGridLines {
 };
 inline constexpr int kReadAhead = 64;
 
+// Describes a tile whose posts are taken from a coarser tile that contains it.
+struct FallbackTile {
+  lod::TileKey key;
+  lod::TileKey coarser;  // an ancestor of `key`
+  int intervals = 0;     // of both
+  // Heights of the tile that is replaced, without exaggeration. Posts outside are moved to the nearer limit.
+  double min_height_m = 0;
+  double max_height_m = 0;
+};
+
 // Holds the height grids of one tile in one family. Immutable; any thread may read it.
 template <typename T>
 class TileHeightGrids {
  public:
   TileHeightGrids(const paging::TileHeights& heights, double radius_m, double exaggeration, LineFamily family);
+  // Copies the posts of another family.
+  TileHeightGrids(const TileHeightGrids& other, LineFamily family);
+  // Samples the facets of the coarser tile at the posts of the finer one. Where the coarser tile's lines are even
+  // and no post is moved, both have the same facets but for rounding. Posts are moved to the limits, so that
+  // whatever holds of the replaced tile's heights holds of these.
+  TileHeightGrids(const TileHeightGrids<float>& coarser, const FallbackTile& tile, double radius_m,
+                  double exaggeration, LineFamily family);
   TileHeightGrids(const TileHeightGrids&) = delete;
   TileHeightGrids& operator=(const TileHeightGrids&) = delete;
 
@@ -82,9 +99,14 @@ class TileHeightGrids {
   const HeightGridLines<T>& lines(int i, int j) const {
     return lines_[static_cast<std::size_t>(j * per_side_ + i)];
   }
+  LineFamily family() const { return family_; }
   std::size_t bytes() const;
 
  private:
+  // Sets all grids from inverse face depths at the posts of a tile, row by row.
+  void set(const std::vector<double>& inverse_depth, int intervals, double radius_m);
+
+  LineFamily family_;
   int per_side_ = 1;
   std::vector<HeightGridLines<T>> lines_;  // grid (i, j) at j * per_side + i
   std::vector<T> storage_;

@@ -1,8 +1,14 @@
 #include "vpe/voxel/cast/height_grid_store.h"
 
+#include <utility>
+
+#include "vpe/voxel/cast/tile_fallbacks.h"
+
 namespace vpe::voxel {
 
 namespace {
+
+constexpr LineFamily kAllFamilies[] = {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals};
 
 // Few tiles lie below the camera.
 constexpr double kExactShare = 0.05;
@@ -20,65 +26,139 @@ HeightGridStore::HeightGridStore(std::shared_ptr<const paging::PlanetFile> plane
       exact_(budget_share(budget_bytes, kExactShare)) {}
 
 template <typename T>
-std::shared_ptr<const TileHeightGrids<T>> HeightGridStore::get(Cache<T>& cache, const Key& key) const {
+HeightGridStore::Pointer<T> HeightGridStore::find(Cache<T>& cache, Tile tile, double exaggeration) {
+  for (const LineFamily family : kAllFamilies) {
+    if (auto found = cache.find({tile, tile, family, exaggeration})) return found;
+  }
+  return nullptr;
+}
+
+template <typename T, typename Make>
+HeightGridStore::Pointer<T> HeightGridStore::get(Cache<T>& cache, const Key& key, const Make& make) const {
   return cache.get(key, [&] {
-    auto tile_grids = std::make_shared<const TileHeightGrids<T>>(
-        planet_->heights(planet_->tree()[key.tile].key, key.exaggeration), planet_->radius_m(),
-        key.exaggeration, key.family);
-    const std::size_t bytes = tile_grids->bytes();
+    Pointer<T> made = make();
+    const std::size_t bytes = made->bytes();
     ++tiles_made_;
     bytes_made_ += bytes;
-    return std::pair(std::move(tile_grids), bytes);
+    return std::pair(std::move(made), bytes);
   });
 }
 
-std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::grids(lod::TileTree::Index tile,
-                                                                     LineFamily family,
-                                                                     double exaggeration) const {
-  return get(grids_, {tile, family, exaggeration});
+paging::TileHeights HeightGridStore::heights(Tile tile, double exaggeration) const {
+  return planet_->heights(planet_->tree()[tile].key, exaggeration);
 }
 
-std::shared_ptr<const TileHeightGrids<double>> HeightGridStore::exact_grids(lod::TileTree::Index tile,
-                                                                            LineFamily family,
-                                                                            double exaggeration) const {
-  return get(exact_, {tile, family, exaggeration});
+HeightGridStore::Pointer<float> HeightGridStore::grids(Tile tile, LineFamily family,
+                                                       double exaggeration) const {
+  return get(grids_, {tile, tile, family, exaggeration}, [&] {
+    if (const auto other = held_grids(tile, exaggeration))
+      return std::make_shared<const TileHeightGrids<float>>(*other, family);
+    return std::make_shared<const TileHeightGrids<float>>(heights(tile, exaggeration), planet_->radius_m(),
+                                                          exaggeration, family);
+  });
+}
+
+HeightGridStore::Pointer<double> HeightGridStore::exact_grids(Tile tile, LineFamily family,
+                                                              double exaggeration) const {
+  return get(exact_, {tile, tile, family, exaggeration}, [&] {
+    if (const auto other = find(exact_, tile, exaggeration))
+      return std::make_shared<const TileHeightGrids<double>>(*other, family);
+    const paging::TileHeights posts = heights(tile, exaggeration);
+    if (!held_grids(tile, exaggeration)) {
+      get(grids_, {tile, tile, family, exaggeration}, [&] {
+        return std::make_shared<const TileHeightGrids<float>>(posts, planet_->radius_m(), exaggeration, family);
+      });
+    }
+    return std::make_shared<const TileHeightGrids<double>>(posts, planet_->radius_m(), exaggeration, family);
+  });
 }
 
 std::size_t HeightGridStore::bytes_resident() const { return grids_.bytes() + exact_.bytes(); }
 
-std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::any_grids(lod::TileTree::Index tile,
-                                                                         double exaggeration,
-                                                                         LineFamily& family) const {
-  for (const LineFamily f : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
-    family = f;
-    if (auto found = grids_.find({tile, f, exaggeration})) return found;
-  }
-  family = LineFamily::kColumns;
-  return grids(tile, family, exaggeration);
+HeightGridStore::Pointer<float> HeightGridStore::any_grids(Tile tile, double exaggeration) const {
+  if (auto found = held_grids(tile, exaggeration)) return found;
+  return grids(tile, LineFamily::kColumns, exaggeration);
 }
 
-const TileHeightGrids<float>& ThreadLocalTiles::grids(lod::TileTree::Index tile, LineFamily family) {
+HeightGridStore::Pointer<float> HeightGridStore::held_grids(Tile tile, double exaggeration) const {
+  return find(grids_, tile, exaggeration);
+}
+
+template <typename T>
+HeightGridStore::Pointer<T> HeightGridStore::fallback(Cache<T>& cache, const Key& key) const {
+  return get(cache, key, [&] {
+    const lod::TileTree& tree = planet_->tree();
+    const lod::TileInfo& tile = tree[key.tile];
+    return std::make_shared<const TileHeightGrids<T>>(
+        *any_grids(key.posts_of, key.exaggeration),
+        FallbackTile{tile.key, tree[key.posts_of].key, tree.shape().intervals(), tile.min_height_m,
+                     tile.max_height_m},
+        planet_->radius_m(), key.exaggeration, key.family);
+  });
+}
+
+HeightGridStore::Pointer<float> HeightGridStore::fallback_grids(Tile tile, Tile coarser, LineFamily family,
+                                                                double exaggeration) const {
+  return fallback(grids_, {tile, coarser, family, exaggeration});
+}
+
+HeightGridStore::Pointer<double> HeightGridStore::exact_fallback_grids(Tile tile, Tile coarser,
+                                                                       LineFamily family,
+                                                                       double exaggeration) const {
+  return fallback(exact_, {tile, coarser, family, exaggeration});
+}
+
+std::optional<std::string> HeightGridStore::failure(Tile tile) const {
+  if (!any_failed_) return std::nullopt;
+  const std::lock_guard lock(failures_mutex_);
+  const auto at = failures_.find(tile);
+  return at == failures_.end() ? std::nullopt : std::optional(at->second);
+}
+
+bool HeightGridStore::read(Tile tile, LineFamily family, double exaggeration) const {
+  if (failure(tile)) return false;
+  try {
+    if (!held_grids(tile, exaggeration)) grids(tile, family, exaggeration);
+    return true;
+  } catch (const paging::PlanetError& e) {
+    const std::lock_guard lock(failures_mutex_);
+    failures_.emplace(tile, e.what());
+    any_failed_ = true;
+    return false;
+  }
+}
+
+const HeightGridStore::Pointer<float>& ThreadLocalTiles::grids(lod::TileTree::Index tile, LineFamily family) {
   Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
-  if (!slot.is(tile, family)) slot = {tile, family, store_.grids(tile, family, exaggeration_)};
-  return *slot.held;
-}
-
-const TileHeightGrids<double>& ThreadLocalTiles::exact_grids(lod::TileTree::Index tile, LineFamily family) {
-  Slot<double>& slot = exact_[number(tile, family) % exact_.size()];
-  if (!slot.is(tile, family)) slot = {tile, family, store_.exact_grids(tile, family, exaggeration_)};
-  return *slot.held;
-}
-
-const TileHeightGrids<float>& ThreadLocalTiles::any_grids(lod::TileTree::Index tile, LineFamily& family) {
-  for (const LineFamily f : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
-    family = f;
-    const Slot<float>& slot = slots_[number(tile, f) % slots_.size()];
-    if (slot.is(tile, f)) return *slot.held;
+  if (!slot.is(tile, family)) {
+    slot = {
+        tile, family,
+        fallbacks_ != nullptr ? fallbacks_->grids(tile, family) : store_.grids(tile, family, exaggeration_)};
   }
-  auto found = store_.any_grids(tile, exaggeration_, family);
+  return slot.held;
+}
+
+const HeightGridStore::Pointer<double>& ThreadLocalTiles::exact_grids(lod::TileTree::Index tile,
+                                                                      LineFamily family) {
+  Slot<double>& slot = exact_[number(tile, family) % exact_.size()];
+  if (!slot.is(tile, family)) {
+    slot = {tile, family,
+            fallbacks_ != nullptr ? fallbacks_->exact_grids(tile, family)
+                                  : store_.exact_grids(tile, family, exaggeration_)};
+  }
+  return slot.held;
+}
+
+const HeightGridStore::Pointer<float>& ThreadLocalTiles::any_grids(lod::TileTree::Index tile) {
+  for (const LineFamily family : kAllFamilies) {
+    const Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
+    if (slot.is(tile, family)) return slot.held;
+  }
+  auto found = fallbacks_ != nullptr ? fallbacks_->any_grids(tile) : store_.any_grids(tile, exaggeration_);
+  const LineFamily family = found->family();
   Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
   slot = {tile, family, std::move(found)};
-  return *slot.held;
+  return slot.held;
 }
 
 }  // namespace vpe::voxel

@@ -9,6 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
 
 #include "lod/tree/tree.h"
 #include "paging/planet/planet_file.h"
@@ -20,28 +24,40 @@ namespace vpe::voxel {
 // Any thread may call any member. Returned grids are immutable and live as long as they are held.
 class HeightGridStore {
  public:
+  using Tile = lod::TileTree::Index;
+  template <typename T>
+  using Pointer = std::shared_ptr<const TileHeightGrids<T>>;
+
   // The budget limits the grids that are kept. Smaller: grids are read and made again; larger: more memory.
   HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
   const paging::PlanetFile& planet() const { return *planet_; }
 
-  // Returns the grids of a tile. Throws paging::PlanetError if the tile cannot be read, as the functions below
-  // do.
-  std::shared_ptr<const TileHeightGrids<float>> grids(lod::TileTree::Index tile, LineFamily family,
-                                                      double exaggeration) const;
-  // Returns the grids in double, for the tiles below the camera.
-  std::shared_ptr<const TileHeightGrids<double>> exact_grids(lod::TileTree::Index tile, LineFamily family,
-                                                             double exaggeration) const;
+  // Returns the grids of a tile; reads it unless a family of it is held. Throws paging::PlanetError if the tile
+  // cannot be read, as the functions below do.
+  Pointer<float> grids(Tile tile, LineFamily family, double exaggeration) const;
+  // Returns the grids in double, for the tiles below the camera. Then grids() of the tile are held too.
+  Pointer<double> exact_grids(Tile tile, LineFamily family, double exaggeration) const;
 
-  // Returns the grids in any family that is held, else in kColumns, and sets `family`. All families hold the
-  // same posts.
-  std::shared_ptr<const TileHeightGrids<float>> any_grids(lod::TileTree::Index tile, double exaggeration,
-                                                          LineFamily& family) const;
+  // Returns the grids in any family that is held, else in kColumns. All families hold the same posts.
+  Pointer<float> any_grids(Tile tile, double exaggeration) const;
+  // Returns the grids in any family that is held, or null. Reads nothing.
+  Pointer<float> held_grids(Tile tile, double exaggeration) const;
+
+  // Returns grids of `tile` with the posts of `coarser`, an ancestor of it (FallbackTile in height_grid.h).
+  Pointer<float> fallback_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
+  Pointer<double> exact_fallback_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
+
+  // Returns why a tile could not be read before, or nullopt. Such a tile is not read again by read().
+  std::optional<std::string> failure(Tile tile) const;
+  // Reads a tile in a family, unless any family of it is held. Returns false and records the failure if it cannot
+  // be read.
+  bool read(Tile tile, LineFamily family, double exaggeration) const;
 
   std::size_t bytes_resident() const;
   std::size_t budget_bytes() const { return budget_; }
 
-  // Counts all grids that were ever made from the planet file, those that have left the store included.
+  // Counts all grids that were ever made, those that have left the store included.
   struct BuildTotals {
     std::int64_t tiles = 0;
     std::size_t bytes = 0;
@@ -50,21 +66,28 @@ class HeightGridStore {
 
  private:
   struct Key {
-    lod::TileTree::Index tile;
+    Tile tile;
+    Tile posts_of;  // `tile`, or the coarser tile that its posts are from
     LineFamily family;
     double exaggeration;
     bool operator==(const Key&) const = default;
   };
   struct KeyHash {
     std::size_t operator()(const Key& k) const {
-      return (std::size_t{k.tile} * kFamilies + static_cast<std::size_t>(k.family)) * 0x9e3779b97f4a7c15ULL ^
+      return ((std::size_t{k.tile} * kFamilies + static_cast<std::size_t>(k.family)) * 0x9e3779b97f4a7c15ULL +
+              k.posts_of) ^
              std::hash<double>()(k.exaggeration);
     }
   };
   template <typename T>
   using Cache = vpe::base::LruCache<Key, TileHeightGrids<T>, KeyHash>;
   template <typename T>
-  std::shared_ptr<const TileHeightGrids<T>> get(Cache<T>& cache, const Key& key) const;
+  static Pointer<T> find(Cache<T>& cache, Tile tile, double exaggeration);
+  template <typename T, typename Make>
+  Pointer<T> get(Cache<T>& cache, const Key& key, const Make& make) const;
+  template <typename T>
+  Pointer<T> fallback(Cache<T>& cache, const Key& key) const;
+  paging::TileHeights heights(Tile tile, double exaggeration) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::size_t budget_;
@@ -72,27 +95,35 @@ class HeightGridStore {
   mutable std::atomic<std::size_t> bytes_made_{0};
   mutable Cache<float> grids_;
   mutable Cache<double> exact_;
+  mutable std::atomic<bool> any_failed_{false};
+  mutable std::mutex failures_mutex_;
+  mutable std::unordered_map<Tile, std::string> failures_;
 };
+
+class TileFallbacks;  // tile_fallbacks.h
 
 // Remembers the grids that one thread used last, so that it finds them again without a lock. Not synchronised.
 class ThreadLocalTiles {
  public:
-  // `store` must outlive this.
-  ThreadLocalTiles(const HeightGridStore& store, double exaggeration)
-      : store_(store), exaggeration_(exaggeration) {}
+  // `store` and `fallbacks` must outlive this. Without fallbacks every tile is read.
+  ThreadLocalTiles(const HeightGridStore& store, double exaggeration, TileFallbacks* fallbacks)
+      : store_(store), exaggeration_(exaggeration), fallbacks_(fallbacks) {}
 
-  // Return what the store's functions of the same names return, and throw what they throw. References are valid
-  // until the next call.
-  const TileHeightGrids<float>& grids(lod::TileTree::Index tile, LineFamily family);
-  const TileHeightGrids<double>& exact_grids(lod::TileTree::Index tile, LineFamily family);
-  const TileHeightGrids<float>& any_grids(lod::TileTree::Index tile, LineFamily& family);
+  // Return the grids of a tile, or of what stands in for it. References are valid until the next call. Throw
+  // paging::PlanetError: without fallbacks for each tile that cannot be read, else where no ancestor can be
+  // read. any_grids() chooses the family that costs least.
+  template <typename T>
+  using Pointer = HeightGridStore::Pointer<T>;
+  const Pointer<float>& grids(lod::TileTree::Index tile, LineFamily family);
+  const Pointer<double>& exact_grids(lod::TileTree::Index tile, LineFamily family);
+  const Pointer<float>& any_grids(lod::TileTree::Index tile);
 
  private:
   template <typename T>
   struct Slot {
     lod::TileTree::Index tile = ~lod::TileTree::Index{0};
     LineFamily family = LineFamily::kColumns;
-    std::shared_ptr<const TileHeightGrids<T>> held;
+    Pointer<T> held;
     bool is(lod::TileTree::Index t, LineFamily f) const { return tile == t && family == f && held; }
   };
   static std::size_t number(lod::TileTree::Index tile, LineFamily family) {
@@ -101,6 +132,7 @@ class ThreadLocalTiles {
 
   const HeightGridStore& store_;
   double exaggeration_;
+  TileFallbacks* fallbacks_;
   std::array<Slot<float>, 256> slots_;
   std::array<Slot<double>, 8> exact_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "vpe/voxel/cast/column_batch.h"
@@ -91,32 +92,54 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
     : surface_(planet, bytes_of_share(budget_bytes, kSurfaceShare)),
       store_(planet, bytes_of_share(budget_bytes, 1.0 - kSurfaceShare)) {}
 
+double RangeCaster::ground_radius_m(const glm::dvec3& up, double exaggeration,
+                                    const TileFallbacks* fallbacks) const {
+  if (fallbacks == nullptr) return surface_.at(up, exaggeration).radius_m;
+  if (fallbacks->purpose() == TileFallbacks::Purpose::kImage)
+    return surface_.readable_radius_m(up, exaggeration);
+  const lod::TileTree& tree = surface_.planet().tree();
+  const lod::TileInfo& below = tree.deepest(lod::tile_at(mars::chart_point(up), lod::kMaxLevel));
+  return surface_.planet_radius_m() + exaggeration * below.min_height_m;
+}
+
 ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                                    std::span<float> range_m, SectorCaster& sectors) const {
+                                    std::span<float> range_m, SectorCaster& sectors,
+                                    TileFallbacks* fallbacks) const {
   const double distance = glm::length(view.camera.position_m);
-  if (distance > 0 && options.method != RangeOptions::Method::kSingleRays) {
+  const SingleRays single_rays(surface_, options.exaggeration, fallbacks);
+  ScratchPool scratches = make_scratch_pool(store_, options.exaggeration, fallbacks);
+  std::optional<ColumnWalk> walk;
+  // Fallbacks serve single rays too.
+  if (distance > 0 && (options.method != RangeOptions::Method::kSingleRays || fallbacks != nullptr)) {
     const glm::dvec3 up = view.camera.position_m / distance;
-    const ColumnCamera camera{up, distance, surface_.planet_radius_m(),
-                              surface_.at(up, options.exaggeration).radius_m};
-    const bool round = upright(view, up);
-    const bool is_reference = options.method == RangeOptions::Method::kReference;
-    if (camera.distance_m > camera.ground_m &&
-        (is_reference || round || view.projection == core::Projection::kPerspective)) {
-      const ColumnWalk walk(surface_, camera, options.exaggeration, {options.cell_px, core::focal_px(view)});
-      ScratchPool scratches = make_scratch_pool(store_, options.exaggeration);
-      if (is_reference) {
-        march_fixed_steps(view, walk, scratches, pool, range_m);
-      } else if (round) {
-        cast_upright(view, walk, scratches, pool, range_m);
-      } else {
-        sectors.cast(view, walk, scratches, surface_, options.exaggeration, options.cell_px == 0, pool,
-                     range_m);
-      }
-      return walk.usage();
+    const double ground_m = ground_radius_m(up, options.exaggeration, fallbacks);
+    if (distance > ground_m) {
+      walk.emplace(
+          surface_, ColumnCamera{up, distance, surface_.planet_radius_m(), ground_m}, options.exaggeration,
+          CellRule{options.cell_px, core::focal_px(view),
+                   lod::is_neutral(options.control) ? nullptr : &options.control, lod::centre_of_view(view)},
+          fallbacks);
+      if (fallbacks != nullptr && fallbacks->purpose() == TileFallbacks::Purpose::kImage)
+        fallbacks->require(walk->below_camera());
     }
   }
-  cast_single_rays(view, options.exaggeration, pool, range_m);
+  if (walk && options.method != RangeOptions::Method::kSingleRays) {
+    const bool round = upright(view, walk->camera().up);
+    const bool is_reference = options.method == RangeOptions::Method::kReference;
+    if (is_reference || round || view.projection == core::Projection::kPerspective) {
+      if (is_reference) {
+        march_fixed_steps(view, *walk, scratches, pool, range_m);
+      } else if (round) {
+        cast_upright(view, *walk, scratches, pool, range_m);
+      } else {
+        sectors.cast(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool, range_m);
+      }
+      return walk->usage();
+    }
+  }
+  cast_single_rays(view, single_rays, walk ? &*walk : nullptr, scratches, pool, range_m);
   ColumnWalk::Usage usage;
+  if (walk) usage = walk->usage();  // of rays that lacked a tile
   usage.steepest_slope = surface_.planet().tree().steepest_slope(options.exaggeration);
   return usage;
 }
@@ -153,15 +176,24 @@ void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, S
   cast_columns({&batch, 1}, walk, scratches, pool);
 }
 
-void RangeCaster::cast_single_rays(const core::View& view, double exaggeration, base::ThreadPool& pool,
+void RangeCaster::cast_single_rays(const core::View& view, const SingleRays& single_rays,
+                                   const ColumnWalk* walk, ScratchPool& scratches, base::ThreadPool& pool,
                                    std::span<float> range_m) const {
   const core::SubRectangle part = core::drawn_part(view);
+  const glm::dvec3& camera_m = view.camera.position_m;
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
     const auto width = static_cast<std::size_t>(part.width);
     for (std::size_t x = 0; x < width; ++x) {
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
-      range_m[row * width + x] = static_cast<float>(surface_.cast(view.camera.position_m, ray, exaggeration));
+      std::optional<double> range = single_rays.cast(camera_m, ray);
+      if (!range && walk == nullptr) range = 0;  // below the ground that is there
+      if (!range) {
+        const ScratchPool::Lease scratch = scratches.acquire();
+        FacetFinder finder(*walk, scratch->tiles);
+        range = march(camera_m, ray, 0, walk->highest_m(), finder, walk->camera().radius_m);
+      }
+      range_m[row * width + x] = static_cast<float>(*range);
     }
   });
 }

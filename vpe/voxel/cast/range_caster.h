@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 
+#include "lod/control.h"
 #include "paging/planet/planet_file.h"
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
@@ -38,6 +39,8 @@ struct RangeOptions {
   // kColumns is by far the fastest. The others are checks, and the baseline of measurements
   // (docs/measurements/rays.md).
   Method method = Method::kColumns;
+  lod::LevelControl control = {};  // acts unless cell_px is 0
+  bool operator==(const RangeOptions&) const = default;
 };
 
 class RangeCaster {
@@ -57,14 +60,19 @@ class RangeCaster {
   // steepest slope of the planet alone. Throws
   // paging::PlanetError for tiles that cannot be read.
   //
+  // With fallbacks, coarser tiles take the place of tiles that are not there (tile_fallbacks.h), the usage's
+  // bounds hold for what was cast, and paging::PlanetError is thrown only where not even a root can be read.
+  // Without any absent tile the ranges are those without fallbacks, to the bit.
+  //
   // A cast uses the memory of a SectorCaster: one thread at a time may call it for each of them. Without one,
   // the caster's own serves, for one thread at a time.
   ColumnWalk::Usage cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                         std::span<float> range_m) {
-    return cast(view, options, pool, range_m, sectors_);
+                         std::span<float> range_m, TileFallbacks* fallbacks = nullptr) {
+    return cast(view, options, pool, range_m, sectors_, fallbacks);
   }
   ColumnWalk::Usage cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                         std::span<float> range_m, SectorCaster& sectors) const;
+                         std::span<float> range_m, SectorCaster& sectors,
+                         TileFallbacks* fallbacks = nullptr) const;
   static constexpr double kRangeError = 1e-6;
   // Error in fields of view wider than kWide_deg, whose lowest rows look almost straight down, and of ground
   // whose exaggerated height range is more than a tenth of the radius.
@@ -84,10 +92,12 @@ class RangeCaster {
   }
 
  private:
+  // Returns the radius of the ground below the camera, or of what lies no higher if nothing may be read.
+  double ground_radius_m(const glm::dvec3& up, double exaggeration, const TileFallbacks* fallbacks) const;
   void cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
                     base::ThreadPool& pool, std::span<float> range_m) const;
-  void cast_single_rays(const core::View& view, double exaggeration, base::ThreadPool& pool,
-                        std::span<float> range_m) const;
+  void cast_single_rays(const core::View& view, const SingleRays& single_rays, const ColumnWalk* walk,
+                        ScratchPool& scratches, base::ThreadPool& pool, std::span<float> range_m) const;
 
   paging::Surface surface_;
   HeightGridStore store_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "vpe/voxel/cast/facet_finder.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
@@ -17,8 +18,6 @@ namespace {
 constexpr double kSpacing_px = 1.0;
 constexpr int kTaskRows = 32;
 constexpr int kTaskColumns = 128;
-// A ray is cast over this share of a hint before and behind it.
-constexpr double kAround = 0.04;
 
 // Holds the hints of one row. For one thread.
 struct RowHints {
@@ -32,31 +31,12 @@ struct RowHints {
   std::vector<int> unresolved;
 };
 
-// Casts about the nearer hint, then from the farther one on, and from the camera if either lies too far (the
-// retrace of Wan 1999, section 4).
-double cast_near(const paging::Surface& surface, const glm::dvec3& camera, const glm::dvec3& ray,
-                 double exaggeration, float a, float b) {
-  const auto near = static_cast<double>(std::min(a, b));
-  const auto far = static_cast<double>(std::max(a, b));
-  if (std::isfinite(near)) {
-    const double begin = (1.0 - kAround) * near;
-    const double end = (1.0 + kAround) * near;
-    double range = surface.cast(camera, ray, exaggeration, {begin, end});
-    if (std::isfinite(range) && range != begin) return range;
-    if (range != begin && std::isfinite(far)) {
-      const double beyond = std::max((1.0 - kAround) * far, end);
-      range = surface.cast(camera, ray, exaggeration, {beyond, std::numeric_limits<double>::infinity()});
-      if (range != beyond) return range;
-    }
-  }
-  return surface.cast(camera, ray, exaggeration);
-}
-
-// Does the same over the walk's height grids, in fixed steps.
+// Casts about the nearer hint, over the walk's height grids in fixed steps, and from the camera if the hint lies
+// too far.
 double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& camera, const glm::dvec3& ray,
                   float a, float b) {
   const auto near = static_cast<double>(std::min(a, b));
-  const double begin = std::isfinite(near) ? (1.0 - kAround) * near : 0.0;
+  const double begin = std::isfinite(near) ? (1.0 - kAroundRange) * near : 0.0;
   const double range = march(camera, ray, begin, walk.highest_m(), finder, walk.camera().radius_m);
   return range == begin ? march(camera, ray, 0, walk.highest_m(), finder, walk.camera().radius_m) : range;
 }
@@ -156,8 +136,7 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
 }
 
 void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-                        const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
-                        std::span<float> range_m) {
+                        const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m) {
   const SectorPlan plan(view, walk.camera().up, kSpacing_px);
   cast_sectors(plan, walk, scratches, pool);
   const core::SubRectangle part = core::drawn_part(view);
@@ -194,9 +173,10 @@ void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchP
         refine_row(rays, a, b, share, finder, exact_finder, out, hints.unresolved);
         for (const int k : hints.unresolved) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          out[k] = static_cast<float>(
-              exact ? cast_near(surface, view.camera.position_m, ray, exaggeration, a[k], b[k])
-                    : march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]));
+          std::optional<double> range;
+          if (single_rays != nullptr) range = single_rays->cast_near(view.camera.position_m, ray, a[k], b[k]);
+          if (!range) range = march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]);
+          out[k] = static_cast<float>(*range);
         }
       }
     }

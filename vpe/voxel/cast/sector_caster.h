@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
 #include "vpe/voxel/cast/column_batch.h"
+#include "vpe/voxel/cast/single_rays.h"
 #include "vpe/voxel/cast/view_sector.h"
 
 namespace vpe::voxel {
@@ -21,11 +21,11 @@ class SectorCaster {
  public:
   // Writes the ranges of the view's drawn part, row by row from the top. Casts the columns of all sectors, then
   // intersects each pixel's own ray with the facet at its nearest samples. Where these belong to different
-  // surfaces (ridges, the skyline) the ray is cast by itself: against the reference surface if `exact`, else in
-  // fixed steps over the height grids of `walk`. Throws paging::PlanetError for tiles that cannot be read.
+  // surfaces (ridges, the skyline) the ray is cast by itself: against the reference surface by `single_rays`; if
+  // that is null, or lacks a tile, in fixed steps over the height grids of `walk`. Throws paging::PlanetError for
+  // tiles that cannot be read.
   void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-            const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
-            std::span<float> range_m);
+            const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m);
 
   // Returns the bytes of the samples that are kept.
   std::size_t bytes() const;

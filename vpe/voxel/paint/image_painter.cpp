@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <unordered_set>
 #include <vector>
 
@@ -87,7 +88,7 @@ void ImagePainter::set_shading(const core::DrawRequest& request) {
 
 std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
                                  std::span<base::Rgb> colour, std::span<float> inverse_depth,
-                                 base::ThreadPool& pool) {
+                                 base::ThreadPool& pool, Reading* reading) {
   set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
@@ -110,31 +111,54 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.colour = colour.data();
   job.inverse_depth = inverse_depth.empty() ? nullptr : inverse_depth.data();
 
-  const auto bands = static_cast<std::size_t>((size.y + kBand - 1) / kBand);
+  if (!job.by_point || reading == nullptr) return paint_bands(job, shading_, pool, reading);
+  try {
+    return paint_bands(job, shading_, pool, reading);
+  } catch (const paging::PlanetError& e) {
+    reading->failure_of_points = e.what();
+  }
+  paging::ShadingParams smooth = shading_;
+  smooth.flat = false;
+  if (smooth.colour_source == paging::ColourSource::kImageAtPosts)
+    smooth.colour_source = paging::ColourSource::kImage;
+  job.by_point = false;
+  job.shading = &smooth;
+  return paint_bands(job, smooth, pool, reading);
+}
+
+std::int64_t ImagePainter::paint_bands(const PaintJob& job, const paging::ShadingParams& shading,
+                                       base::ThreadPool& pool, Reading* reading) {
+  const auto bands = static_cast<std::size_t>((job.height + kBand - 1) / kBand);
   std::atomic<std::int64_t> nodata_count{0};
+  PaintSources sources(*planet_, shader_, shading, failures_,
+                       reading != nullptr ? std::optional(reading->rule) : std::nullopt);
   base::ObjectPool<PaintTiles> tiles_pool(
       [&] {
-        return std::make_unique<PaintTiles>(*planet_, shader_, shading_,
+        return std::make_unique<PaintTiles>(*planet_, sources, shading,
                                             share(kHeldShare / pool.threads(), budget_));
       },
       {.discard_on_exception = true});
   pool.run(bands, [&](std::size_t band) {
     const auto tiles = tiles_pool.acquire();
     const int begin = static_cast<int>(band) * kBand;
-    nodata_count += paint_rows(job, *tiles, begin, std::min(begin + kBand, size.y));
+    nodata_count += paint_rows(job, *tiles, begin, std::min(begin + kBand, job.height));
   });
+  if (reading != nullptr) reading->absent = sources.absent();
   return nodata_count;
 }
 
 void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View& downsampled,
-                              std::span<const float> range_m, const base::ThreadPool& pool) const {
+                              std::span<const float> range_m, const base::ThreadPool& pool,
+                              Reading* reading) const {
   const bool has_image = planet_->meta().finest_image_level >= 0;
   // No tile depends on the scale of colours.
   const paging::ShadingParams shading =
       paging::shading_params(request.settings, request.sun, has_image, nullptr);
   if (by_point(shading)) return;
   constexpr double kPart = 0.5 * (1 - kHeldShare);
-  PaintTiles tiles(*planet_, shader_, shading, budget_);
+  PaintSources sources(*planet_, shader_, shading, failures_,
+                       reading != nullptr ? std::optional(reading->rule) : std::nullopt);
+  PaintTiles tiles(*planet_, sources, shading, budget_);
   HeldTiles ground(share(kPart * kShares.normals, budget_));
   HeldTiles images(share(kPart * kShares.images, budget_));
   const double root_range_m = root_range(*planet_, request);
@@ -149,11 +173,38 @@ void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View
       const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
       const PaintTile& tile =
           tiles.find(downsampled.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+      if (reading != nullptr) continue;
       if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
       if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(base::Rgb)))
         return;
     }
   }
+  if (reading != nullptr) reading->absent = sources.absent();
+}
+
+void ImagePainter::read(const PaintPage& page) const {
+  if (failures_.of(page)) return;
+  try {
+    if (page.is_image) {
+      shader_.image(page.key);
+      return;
+    }
+    paging::ShadingParams shading;
+    shading.exaggeration = page.exaggeration;
+    shading.shadows = page.sun != glm::dvec3(0);
+    shading.sun = page.sun;
+    shader_.normals(page.key, shading);
+  } catch (const paging::PlanetError& e) {
+    failures_.record(page, e.what());
+  }
+}
+
+std::size_t ImagePainter::page_capacity(const PaintPage& page) const {
+  const auto side = static_cast<std::size_t>(planet_->meta().tile.posts());
+  const std::size_t texels = std::size_t{paging::kImageIntervals + 1} * (paging::kImageIntervals + 1);
+  const std::size_t bytes =
+      page.is_image ? texels * sizeof(base::Rgb) : side * side * (sizeof(paging::NormalTile::Post) + 1);
+  return share((1 - kHeldShare) * (page.is_image ? kShares.images : kShares.normals), budget_) / bytes;
 }
 
 }  // namespace vpe::voxel

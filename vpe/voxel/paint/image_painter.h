@@ -17,13 +17,18 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "paging/shading/terrain_shader.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
+#include "vpe/voxel/paint/paint_sources.h"
 #include "vpe/voxel/paint/scale_table.h"
 
 namespace vpe::voxel {
+
+struct PaintJob;  // paint_job.h
 
 // One thread at a time may call paint().
 class ImagePainter {
@@ -44,23 +49,44 @@ class ImagePainter {
   // rounded to float. They are the same to the bit for any number of threads, any instruction set and any
   // earlier image. Modes wireframe and markers are painted as their ground would be. Throws paging::PlanetError
   // for unreadable tiles, and std::runtime_error for an unreadable palette.
+  //
+  // With `reading`, coarser posts and texels take the place of those that are not there, and paging::PlanetError
+  // is thrown only where not even a root can be read. Ground that is coloured pixel by pixel (above) is read in
+  // any case; where that fails, it is coloured as if it were not. Without any absent page the colours are those
+  // without `reading`, to the bit.
+  struct Reading {
+    ReadingRule rule;
+    std::vector<AbsentPage> absent = {};  // out
+    std::string failure_of_points = {};   // out: why ground could not be coloured pixel by pixel, or ""
+  };
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
-                     std::span<base::Rgb> colour, std::span<float> inverse_depth, base::ThreadPool& pool);
+                     std::span<base::Rgb> colour, std::span<float> inverse_depth, base::ThreadPool& pool,
+                     Reading* reading = nullptr);
 
   // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given
   // ranges. `downsampled` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and
   // when the tiles of this image would fill more than half of the caches of their kind. Any thread may call it,
-  // also while another one paints. Throws paging::PlanetError.
+  // also while another one paints. Throws paging::PlanetError. With `reading` it finds what is absent instead.
   void read_ahead(const core::DrawRequest& request, const core::View& downsampled,
-                  std::span<const float> range_m, const base::ThreadPool& pool) const;
+                  std::span<const float> range_m, const base::ThreadPool& pool,
+                  Reading* reading = nullptr) const;
+
+  // Reads a page, and records the failure if it cannot be read. Any thread may call it, also while another one
+  // paints.
+  void read(const PaintPage& page) const;
+  // Returns how many pages such as this one the budget holds.
+  std::size_t page_capacity(const PaintPage& page) const;
 
   std::size_t bytes_resident() const { return shader_.bytes_resident(); }
 
  private:
   void set_shading(const core::DrawRequest& request);
+  std::int64_t paint_bands(const PaintJob& job, const paging::ShadingParams& shading, base::ThreadPool& pool,
+                           Reading* reading);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::size_t budget_;
+  mutable PaintFailures failures_;
   paging::TerrainShader shader_;
   paging::ShadingParams shading_;
   core::Appearance scale_of_;

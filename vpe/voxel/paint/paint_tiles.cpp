@@ -42,11 +42,10 @@ PaintNeeds paint_needs(const paging::ShadingParams& shading) {
           shading.colour_source == ColourSource::kImage};
 }
 
-PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& shader,
+PaintTiles::PaintTiles(const paging::PlanetFile& planet, PaintSources& sources,
                        const paging::ShadingParams& shading, std::size_t limit_bytes)
     : planet_(planet),
-      shader_(shader),
-      shading_(shading),
+      sources_(sources),
       needs_(paint_needs(shading)),
       max_level_(planet.meta().finest_level),
       image_below_(0),
@@ -69,17 +68,19 @@ PaintTile PaintTiles::make(const lod::TileKey& square, int level) const {
   out.per_v = 1.0 / (rect.v1 - rect.v0);
   const lod::TileKey stored = planet_.tree().deepest(lod::ancestor(square, level)).key;
   if (needs_.posts || planet_.has_nodata(stored)) {
-    out.ground = shader_.normals(stored, shading_);
+    out.ground = sources_.posts(stored);
+    const lod::TileKey& at = out.ground->key;
     const int n = out.ground->side - 1;
-    out.ground_x = window(square.i, square.level, stored.i, stored.level, n);
-    out.ground_y = window(square.j, square.level, stored.j, stored.level, n);
+    out.ground_x = window(square.i, square.level, at.i, at.level, n);
+    out.ground_y = window(square.j, square.level, at.j, at.level, n);
   }
   if (needs_.image) {
     const auto key = planet_.image_key(lod::ancestor(square, std::max(level - image_below_, 0)));
     if (!key) throw paging::PlanetError(planet_.path() + ": has no image; use --set mode=coloured");
-    out.image = shader_.image(*key);
-    out.image_x = window(square.i, square.level, key->i, key->level, paging::kImageIntervals);
-    out.image_y = window(square.j, square.level, key->j, key->level, paging::kImageIntervals);
+    const PaintSources::Texels texels = sources_.texels(*key);
+    out.image = texels.tile;
+    out.image_x = window(square.i, square.level, texels.key.i, texels.key.level, paging::kImageIntervals);
+    out.image_y = window(square.j, square.level, texels.key.j, texels.key.level, paging::kImageIntervals);
   }
   return out;
 }

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "paging/shading/terrain_shader.h"
+#include "vpe/voxel/paint/paint_sources.h"
 
 namespace vpe::voxel {
 
@@ -46,13 +47,14 @@ struct PaintTile {
 // Keeps the squares that one thread has used. Not synchronised.
 class PaintTiles {
  public:
-  // `planet` and `shader` must outlive this. Smaller limits release squares more often, which then are looked
+  // `planet` and `sources` must outlive this. Smaller limits release squares more often, which then are looked
   // up again.
-  PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& shader,
-             const paging::ShadingParams& shading, std::size_t limit_bytes);
+  PaintTiles(const paging::PlanetFile& planet, PaintSources& sources, const paging::ShadingParams& shading,
+             std::size_t limit_bytes);
 
   // Returns the square that holds a point (of any length but 0) at a level of posts, 0 to max_level(); finer
-  // levels show no more. The posts are those of the tile that TerrainShader::colour_at takes. The reference is
+  // levels show no more. The posts are those of the tile that TerrainShader::colour_at takes, or what `sources` has
+  // in their place. The reference is
   // valid until trim() returns true. Throws paging::PlanetError.
   const PaintTile& find(const glm::dvec3& point, int level);
 
@@ -68,8 +70,7 @@ class PaintTiles {
   void hold(const void* tile, std::size_t bytes);
 
   const paging::PlanetFile& planet_;
-  const paging::TerrainShader& shader_;
-  paging::ShadingParams shading_;
+  PaintSources& sources_;
   PaintNeeds needs_;
   int max_level_;
   int image_below_;  // level of posts less the level of image tiles of equal spacing

@@ -1,0 +1,59 @@
+#include "vpe/voxel/ray_request.h"
+
+#include <algorithm>
+#include <glm/vec3.hpp>
+
+#include "lod/options.h"
+#include "vpe/core/appearance/inspect.h"
+
+namespace vpe::voxel {
+
+RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m) {
+  RangeOptions options;
+  options.exaggeration = request.settings.exaggeration;
+  if (request.settings.ray_mode == core::RayMode::kReference) options.method = RangeOptions::Method::kReference;
+  // Coarsening, the price of speed, acts on the cells.
+  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
+    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
+  options.control = lod::level_control(request, planet_radius_m);
+  return options;
+}
+
+std::size_t ray_image_bytes(std::int64_t pixels, int samples) {
+  // Colour, range and inverse depth, and copies while the image is smoothed and written.
+  constexpr std::size_t kBytesPerPixel = 16;
+  constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
+  return static_cast<std::size_t>(pixels) * (kBytesPerPixel + (samples > 1 ? kBytesPerSum : 0));
+}
+
+std::string why_not(const core::DrawRequest& request) {
+  const core::Mode mode = request.settings.mode;
+  if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
+    return "the ray backend has no triangles to show: use --backend polygon for this mode";
+  const core::Inspect inspect = request.settings.inspect;
+  if (request.cull_view || inspect == core::Inspect::kBorders || inspect == core::Inspect::kLevels)
+    return "the ray backend draws no tiles: --cull-from, inspect=borders and inspect=levels show those of --backend "
+           "polygon";
+  if (const std::string_view control = refused_control(request); !control.empty())
+    return "the ray backend draws no triangles: " + std::string(control) + " acts with --backend polygon only";
+  if (const std::string_view control = multires_control(request);
+      !control.empty() && request.settings.ray_mode != core::RayMode::kMultires)
+    return "the ray backend draws the finest tiles everywhere: " + std::string(control) +
+           " acts with --set rays.mode=multires, or with --backend polygon";
+  return {};
+}
+
+std::string_view refused_control(const core::DrawRequest& request) {
+  return request.settings.lod_triangles != 0 ? "lod.triangles" : "";
+}
+
+std::string_view multires_control(const core::DrawRequest& request) {
+  const core::SettingsValues& values = request.settings;
+  if (values.lod_centre_weight != 0) return "lod.centre.weight";
+  if (values.lod_metric != core::SettingsValues().lod_metric) return "lod.metric=distance";
+  if (!request.interest.empty() && values.lod_interest_weight != 0)
+    return "level control by regions of interest";
+  return {};
+}
+
+}  // namespace vpe::voxel

@@ -1,0 +1,31 @@
+// What a request means for the ray backend: what it cannot draw, how it casts, and what an image takes. Pure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "vpe/core/frame.h"
+#include "vpe/voxel/cast/range_caster.h"
+
+namespace vpe::voxel {
+
+// Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed and written.
+// The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in bands.
+std::size_t ray_image_bytes(std::int64_t pixels, int samples);
+
+// Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
+// markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.
+std::string why_not(const core::DrawRequest& request);
+
+// Returns the level control of a request that the ray backend does not have in any mode, or that acts in
+// rays.mode=multires only; for messages, "" if there is none.
+std::string_view refused_control(const core::DrawRequest& request);
+std::string_view multires_control(const core::DrawRequest& request);
+
+// Returns how the ranges of a request are cast: the mode of the settings, its level control, and cells that grow
+// with the request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
+RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m);
+
+}  // namespace vpe::voxel
