@@ -33,14 +33,14 @@ struct HeadAngles {
 
 // Holds the unit axes of a camera. right x up = -forward: OpenGL's camera with z = -forward.
 struct Axes {
-  glm::dvec3 right;
-  glm::dvec3 up;
-  glm::dvec3 forward;
+  glm::dvec3 right{1, 0, 0};
+  glm::dvec3 up{0, 0, 1};
+  glm::dvec3 forward{0, 1, 0};
 };
 
 // Holds position and axes of a camera in the body-fixed frame.
 struct CameraPose {
-  glm::dvec3 position_m;  // from the planet's centre
+  glm::dvec3 position_m{0, 0, 0};  // from the planet's centre
   Axes axes;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/sanitized.h"
+
 namespace app_test {
 
 struct Command {
@@ -18,7 +20,7 @@ struct Command {
   std::string output_to;                           // file for stdout; then Result::out stays empty
   int signal = 0;                                  // sent once when() is true
   std::function<bool()> when;
-  double limit_s = 120;  // time after which it is killed
+  double limit_s = test_support::kIsSanitized ? 1200 : 120;  // time after which it is killed
 };
 
 struct Result {
