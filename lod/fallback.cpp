@@ -17,7 +17,9 @@ struct Replacement {
 
 class ReplacementFinder {
  public:
-  ReplacementFinder(const TileTree& tree, const IsResident& resident) : tree_(tree), resident_(resident) {}
+  ReplacementFinder(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                    const IsResident& resident)
+      : options_(options), tree_(tree), view_(view), resident_(resident) {}
 
   // Finds a replacement that does not affect other tiles. Returns false if there is none.
   bool replace(const SelectedTile& tile, std::vector<Replacement>& out) const {
@@ -51,8 +53,8 @@ class ReplacementFinder {
     return true;
   }
 
-  // Replaces a tile by all four children, each by any mesh or by its own children. Leaves `out` unchanged if
-  // one of them has no replacement.
+  // Replaces a tile by its children, each by any mesh or by its own children. One that cannot be seen needs none:
+  // at the border of an image the others alone are resident. Leaves `out` unchanged if one has no replacement.
   bool by_children(TileTree::Index index, int levels, std::vector<Replacement>& out) const {
     if (levels == 0 || !tree_[index].has_children) return false;
     const std::size_t before = out.size();
@@ -61,14 +63,16 @@ class ReplacementFinder {
       bool found = false;
       for (int v = 0; v < static_cast<int>(tree_[child].variants.size()) && !found; ++v)
         found = take(child, v, out);
-      if (found || by_children(child, levels - 1, out)) continue;
+      if (found || by_children(child, levels - 1, out) || !may_be_seen(options_, tree_, view_, child)) continue;
       out.resize(before);
       return false;
     }
     return true;
   }
 
+  const SelectOptions& options_;
   const TileTree& tree_;
+  const SelectView& view_;
   const IsResident& resident_;
 };
 
@@ -92,7 +96,7 @@ void select_fallbacks(const SelectOptions& options, const TileTree& tree, const 
                       const Selection& selection, const IsResident& resident, FallbackSelection& result) {
   result.missing.clear();
   result.substituted = result.uncovered = 0;
-  const ReplacementFinder finder(tree, resident);
+  const ReplacementFinder finder(options, tree, view, resident);
 
   // Finds ancestors first: they decide which of the other tiles are drawn at all.
   std::vector<TileTree::Index> ancestors;

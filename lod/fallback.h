@@ -24,8 +24,8 @@ struct IsResident {
 };
 
 struct FallbackSelection {
-  // The tiles to draw: all resident, disjoint, in Morton order. They cover everything that the selection
-  // covers, except below roots that are not resident.
+  // The tiles to draw: all resident, disjoint, in Morton order. They cover all that can be seen of what the
+  // selection covers, except below roots that are not resident.
   Selection drawn;
   std::vector<std::size_t> missing;  // indices in selection.tiles of the tiles that are not drawn as selected
   int substituted = 0;               // number of tiles in `drawn` that were not selected
@@ -34,7 +34,7 @@ struct FallbackSelection {
 
 // Replaces each selected tile that is not resident. The first of these that is resident takes its place:
 // another of its own meshes (the nearest finer one, else the nearest coarser one), all of its descendants up to
-// two levels down, or its nearest ancestor. An ancestor replaces everything selected below it, so that a child
+// two levels down that can be seen, or its nearest ancestor. An ancestor replaces everything selected below it, so that a child
 // is never drawn without its siblings. Errors and distances in `result` are those of the drawn tiles.
 // Deterministic.
 void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,

@@ -79,6 +79,12 @@ class Selector {
     finish();
   }
 
+  bool may_be_seen(TileTree::Index index) const {
+    Replacement replacement;
+    visit(index, cull::all_planes(view_.frustum), std::numeric_limits<double>::infinity(), replacement);
+    return replacement.size > 0;
+  }
+
   SelectedTile measured(TileTree::Index index, int variant) const {
     Candidate c{};
     c.index = index;
@@ -276,6 +282,13 @@ SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, co
   SelectScratch scratch;
   Selection unused;
   return Selector(options, tree, view, scratch, unused).measured(index, variant);
+}
+
+bool may_be_seen(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                 TileTree::Index index) {
+  SelectScratch scratch;
+  Selection unused;
+  return Selector(options, tree, view, scratch, unused).may_be_seen(index);
 }
 
 void update_totals(const TileTree& tree, Selection& selection) {

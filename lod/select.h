@@ -119,6 +119,11 @@ void select(const SelectOptions& options, const TileTree& tree, const SelectView
 SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, const SelectView& view,
                           TileTree::Index index, int variant);
 
+// Returns false for a tile that select() would drop because its mesh cannot be seen. Requires arguments that
+// select() accepts.
+bool may_be_seen(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                 TileTree::Index index);
+
 // Sets triangles, max_geometric_error_m, max_screen_space_error_px and tiles_by_level from the tiles.
 void update_totals(const TileTree& tree, Selection& selection);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <set>
 #include <utility>
 
 #include "lod/front_to_back.h"
@@ -281,6 +282,21 @@ void TileCover::use_resident(const core::DrawRequest& request) {
     occlude(drawn_.drawn, culling_view(request), hidden_);
     return;
   }
+}
+
+std::vector<lod::TileKey> TileCover::ancestors() const {
+  std::set<std::pair<int, std::int64_t>> seen;  // by level
+  std::vector<lod::TileKey> out;
+  for (const lod::SelectedTile& tile : drawn_.drawn.tiles) {
+    for (int level = tile.key.level - 1; level >= 0; --level) {
+      const lod::TileKey key = lod::ancestor(tile.key, level);
+      if (!seen.insert({level, lod::pack(key)}).second) break;
+      out.push_back(key);
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const lod::TileKey& a, const lod::TileKey& b) { return a.level < b.level; });
+  return out;
 }
 
 void TileCover::select_later(const core::View& view, lod::Selection& later) {

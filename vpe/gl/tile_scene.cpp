@@ -75,6 +75,9 @@ void TileScene::request_pages(const core::DrawRequest& request) {
     if (streamer_.has_requests()) settled_ = false;
   }
   if (streamer_.has_room_for_later(cover_.bytes())) {
+    // Where a motion brings a tile that is not there, its nearest ancestor stands in for all below it: the nearer, the
+    // less of the image becomes coarser.
+    if (!request.paging.wait) streamer_.request_coarse(cover_.ancestors());
     lod::Selection later;
     for (const core::View& view : later_views(request)) {
       cover_.select_later(view, later);

@@ -404,6 +404,19 @@ void TileStreamer::request_later(const lod::Selection& selection, const core::Vi
   }
 }
 
+void TileStreamer::request_coarse(std::span<const lod::TileKey> tiles) {
+  for (const lod::TileKey& tile : tiles) {
+    if (!is_readable(tile)) continue;
+    const TileNeed need = coarse_need(tile);
+    std::vector<PageKey> pages{mesh_page(tile, need.mesh)};
+    if (need.texture != 0) pages.push_back(texture_page(tile, need.texture));
+    for (const PageKey& page : pages) {
+      if (is_resident(page, frame_ - 1) || !requested_.insert(page).second) continue;
+      requests_.push_back({page, -kLater - static_cast<double>(requests_.size())});
+    }
+  }
+}
+
 void TileStreamer::send_requests() { pager_.want(std::exchange(requests_, {})); }
 
 void TileStreamer::report(core::DrawResult& result) const {

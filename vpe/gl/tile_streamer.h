@@ -111,6 +111,9 @@ class TileStreamer {
   void request(const PageKey& page, double urgency);
   // Requests `first` and what a later view lacks, nearest tiles first, after all that was requested before.
   void request_later(const lod::Selection& selection, const core::View& view, std::optional<PageKey> first);
+  // Requests the coarsest pages of tiles, after all that was requested before, and keeps those that are resident as
+  // those of later views are kept.
+  void request_coarse(std::span<const lod::TileKey> tiles);
   bool has_requests() const { return !requests_.empty(); }
   // Returns true if a frame whose meshes and textures take `frame_bytes` leaves room for pages of later views.
   bool has_room_for_later(std::size_t frame_bytes) const;
