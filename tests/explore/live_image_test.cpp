@@ -51,8 +51,8 @@ TEST(LiveImage, MovingItMeetsItsBudgetByPixelsAndTolerance) {
   for (int n = 0; n < 60; ++n) {
     const auto order = live.next(at(0.01 * n), false, 10'000);
     ASSERT_TRUE(order.has_value());
-    EXPECT_EQ(order->is_full, order->multiplier == 1.0);
-    ms = cost_ms(200, order->multiplier);
+    EXPECT_EQ(order->is_full, order->side == 1.0);
+    ms = cost_ms(200, order->multiplier / (order->side * order->side));
     live.record(ms, true);
     if (n > 30) {
       EXPECT_LT(order->view.width, 1280);
@@ -62,6 +62,42 @@ TEST(LiveImage, MovingItMeetsItsBudgetByPixelsAndTolerance) {
   }
   EXPECT_LT(ms, 60);
   EXPECT_GT(ms, 35);
+}
+
+// A motion begins with the ground of the image at rest, whatever the images at rest have taken.
+TEST(LiveImage, ImagesAtRestDoNotMakeTheNextMotionCoarser) {
+  LiveImage live({.budget_ms = 50});
+  double lon_deg = 0;
+  const auto move = [&](double full_ms) {
+    const auto order = live.next(at(lon_deg += 0.01), false, 10'000);
+    EXPECT_EQ(order->multiplier, 1.0);
+    live.record(cost_ms(full_ms, order->is_full ? 1 : 1 / (order->side * order->side)), true);
+    return *order;
+  };
+  for (int n = 0; n < 30; ++n) move(100);
+  const double side = move(100).side;
+  EXPECT_GT(side, 0.5);
+  for (int rest = 0; rest < 5; ++rest) {
+    int images = 0;
+    while (live.next(at(lon_deg), false, 10'000) && ++images < 20) live.record(5000, true);
+    EXPECT_LT(images, 20);
+    EXPECT_NEAR(move(100).side, side, 0.1) << rest;
+  }
+}
+
+TEST(LiveImage, TheToleranceOnTheScreenIsLimited) {
+  LiveImage live({.budget_ms = 50});
+  double most = 0;
+  for (int n = 0; n < 60; ++n) {
+    const auto order = live.next(at(0.01 * n), false, 10'000);
+    EXPECT_GE(order->side, 1.0 / 3.0);
+    if (order->side > 0.34) {
+      EXPECT_EQ(order->multiplier, 1.0) << "pixels come first";
+    }
+    most = std::max(most, order->multiplier);
+    live.record(10'000, true);
+  }
+  EXPECT_NEAR(most, 2.0, 1e-9);
 }
 
 TEST(LiveImage, WithoutABudgetImagesAreFull) {
@@ -78,6 +114,7 @@ TEST(LiveImage, WithoutABudgetImagesAreFull) {
 TEST(LiveImage, OptionsOutOfRangeAreRejected) {
   EXPECT_THROW(LiveImage({.budget_ms = -1}), std::invalid_argument);
   EXPECT_THROW(LiveImage({.budget_ms = 10, .smallest_side = 0}), std::invalid_argument);
+  EXPECT_THROW(LiveImage({.budget_ms = 10, .most_tolerance = 0.5}), std::invalid_argument);
 }
 
 }  // namespace

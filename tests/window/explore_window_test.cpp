@@ -19,7 +19,7 @@ TEST_F(ExploreWindowTest, ShowsThePlanetAndComesToRest) {
   open();
   ASSERT_NE(window_->drawn(), nullptr);
   EXPECT_TRUE(window_->drawn()->error.empty());
-  EXPECT_EQ(window_->drawn()->request.draw.coarsening, 1.0);
+  EXPECT_TRUE(window_->drawn()->request.is_full);
   EXPECT_EQ(window_->image().width, window_->session().screen().width);
   const std::int64_t frames = window_->frames();
   const std::int64_t images = window_->images();

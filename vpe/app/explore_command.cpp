@@ -18,9 +18,11 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/panorama/panorama_painter.h"
+#include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/files/preferences.h"
+#include "vpe/gl/context.h"
 #include "vpe/window/explore_window.h"
 #endif
 
@@ -39,6 +41,7 @@ struct ExploreArguments {
   std::string flight;
   std::string hotspots;
   bool print_settings = false;
+  bool names_backend = false;  // else that of the last session
   RenderOptions image;
 };
 
@@ -111,7 +114,11 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.display.instead =
       "set DISPLAY to an X server, or work without a window: 'vpe render' draws an image, 'vpe fly' a flight, "
       "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this command on a virtual display";
-  setup.backend = arguments.image.backend.value_or(last.backend);
+  setup.drawn_by = arguments.names_backend ? vpe::explore::drawn_by(arguments.image.backend) : last.drawn_by;
+  setup.has_gpu = gl::has_gpu();
+  setup.suits_rays = [](const core::DrawRequest& request) {
+    return suits_rays(for_window_rays(request, true));
+  };
   setup.sun = sun_for;
   setup.threads = common.threads;
   setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
@@ -131,7 +138,7 @@ std::string keep_session(const window::ExploreWindow& shown, const std::string& 
   last.panels = shown.state().panels;
   last.planet = planet;
   last.pose = shown.session().pose();
-  last.backend = shown.state().backend;
+  last.drawn_by = shown.state().drawn_by;
   const auto [width, height] = shown.display().size();
   last.window_width_px = width;
   last.window_height_px = height;
@@ -191,7 +198,7 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     // Flights, logs, hotspots and regions belong to one planet; the appearance stays for the next.
     here.pose = here.log = here.flight = here.hotspots = "";
     here.image.interest.clear();
-    here.image.backend.reset();
+    here.names_backend = false;
     here.size = "";
     here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
@@ -241,7 +248,10 @@ void add_explore(CLI::App& program, Common& common) {
                 {"begin at a place, in ray casting, with shadows",
                  "vpe explore mars.vpe --pose -59.2,-13.7,8000,90,-10 --backend ray --set shadows=on"},
                 {"record the session as a flight", "vpe explore mars.vpe --log session.flight"}});
-  command->callback([arguments, &common] { explore(*arguments, common); });
+  command->callback([arguments, command, &common] {
+    arguments->names_backend = command->count("--backend") > 0;
+    explore(*arguments, common);
+  });
 }
 
 }  // namespace vpe::app

@@ -54,10 +54,21 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
   return !is_same(*palette_of_, now);
 }
 
+core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance) {
+  core::SettingsValues& values = request.settings;
+  if (values.ray_mode != core::RayMode::kExact) return request;
+  if (!within_tolerance && voxel::multires_control(request).empty()) return request;
+  values.ray_mode = core::RayMode::kMultires;
+  values.ray_cell_px =
+      std::clamp(values.lod_tolerance_px, core::RayLimits::kLeastCell_px, core::RayLimits::kMostCell_px);
+  return request;
+}
+
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   // A limit of triangles is kept by triangles, whatever is chosen.
   const core::Backend backend =
       voxel::refused_control(request.draw).empty() ? request.backend : core::Backend::kPolygon;
+  const bool changes = backend_ && backend_ != backend;
   if (backend_ != backend) {
     renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
@@ -67,12 +78,10 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     backend_ = backend;
   }
   core::DrawRequest draw_request = request.draw;
-  if (core::SettingsValues& values = draw_request.settings; backend == core::Backend::kRay &&
-                                                            values.ray_mode == core::RayMode::kExact &&
-                                                            !voxel::multires_control(draw_request).empty()) {
-    values.ray_mode = core::RayMode::kMultires;
-    values.ray_cell_px =
-        std::clamp(values.lod_tolerance_px, core::RayLimits::kLeastCell_px, core::RayLimits::kMostCell_px);
+  if (backend == core::Backend::kRay) draw_request = for_window_rays(std::move(draw_request), request.is_auto);
+  if (changes) {
+    draw_request.paging.wait = true;
+    draw_request.paging.timeout_s = kChange_s;
   }
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;

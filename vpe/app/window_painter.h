@@ -12,12 +12,18 @@
 
 namespace vpe::app {
 
+// Returns the request as rays draw it in a window. In mode exact they draw the finest tiles everywhere; where level
+// control is asked for, or `within_tolerance`, it becomes multires with cells of the tolerance. Pure.
+core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance);
+
 // Draws the window's image requests. Holds one backend at a time to keep within --memory: after a change of the
-// backend, nothing is loaded. One thread at a time.
+// backend, nothing is loaded, and the first image waits for its tiles for kChange_s at most, so that the window
+// shows the former image until then. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
   WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common);
   window::DrawnImage paint(const window::ImageRequest& request) override;
+  static constexpr double kChange_s = 1.5;
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s);

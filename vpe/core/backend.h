@@ -14,6 +14,10 @@ enum class Backend : std::uint8_t {
   kRay,      // ray casting on the CPU (vpe/voxel)
 };
 
+// Height of the camera above the sphere, in radii, from which on rays have no advantage over triangles without a
+// GPU (docs/measurements/error-and-time.md).
+inline constexpr double kRaysReach_radii = 1.0 / 30;
+
 // Returns "polygon" or "ray".
 std::string_view to_string(Backend backend);
 

@@ -56,8 +56,8 @@ void FlightPlayer::add_look_offset(double yaw_deg, double pitch_deg, double roll
   set_look_offset({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
 }
 
-scripts::FlightState FlightPlayer::state() const {
-  scripts::FlightState state = path_.at(time_s_);
+scripts::FlightState FlightPlayer::state_at(double time_s) const {
+  scripts::FlightState state = path_.at(std::clamp(time_s, 0.0, duration_s()));
   if (offset_.yaw_deg == 0 && offset_.pitch_deg == 0 && offset_.roll_deg == 0) return state;
   state.head = {mars::normalize_lon_deg(state.head.yaw_deg + offset_.yaw_deg),
                 std::clamp(state.head.pitch_deg + offset_.pitch_deg, -90.0, 90.0),

@@ -60,7 +60,9 @@ class FlightPlayer {
   const mars::HeadAngles& look_offset() const { return offset_; }
 
   // Returns the state now. Without an offset it equals Path::at() bit by bit.
-  scripts::FlightState state() const;
+  scripts::FlightState state() const { return state_at(time_s_); }
+  // Returns the state at another time, clamped to the flight, with the offset of now.
+  scripts::FlightState state_at(double time_s) const;
 
   // Returns the settings now: `base` (those before the flight), then the flight's up to and including this
   // time, then the user's own. They depend on the time alone, also after scrubbing backwards.

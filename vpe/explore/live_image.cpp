@@ -12,7 +12,7 @@ namespace {
 lod::ProgressiveRefinementOptions refinement_options() {
   lod::ProgressiveRefinementOptions options;
   options.max_multiplier = 1;  // motion alone does not make images coarser: the budget does
-  options.refine_factor = 2;
+  options.refine_factor = 4;
   return options;
 }
 
@@ -38,6 +38,8 @@ LiveImage::LiveImage(const LiveImageOptions& options) : options_(options), refin
     throw std::invalid_argument("the budget of an image must be 0 (none) or more milliseconds");
   if (!(options.smallest_side > 0.0 && options.smallest_side <= 1.0))
     throw std::invalid_argument("the smallest side must be within 0..1 of the image's");
+  if (!(options.most_tolerance >= 1.0) || !std::isfinite(options.most_tolerance))
+    throw std::invalid_argument("the largest factor on the tolerance must be 1 or more");
 }
 
 void LiveImage::set_budget_ms(double budget_ms) {
@@ -58,9 +60,12 @@ std::optional<LiveImage::Request> LiveImage::next(const core::View& wanted, bool
   state_ = output.state;
   if (!output.draw) return std::nullopt;
   Request request;
-  request.multiplier = output.multiplier;
   request.is_full = output.multiplier == 1.0;
-  request.view = reduced(wanted, std::max(options_.smallest_side, 1.0 / std::sqrt(output.multiplier)));
+  request.side = std::max(options_.smallest_side, 1.0 / std::sqrt(output.multiplier));
+  request.multiplier = request.is_full ? 1.0
+                                       : std::clamp(output.multiplier * request.side * request.side, 1.0,
+                                                    options_.most_tolerance);
+  request.view = reduced(wanted, request.side);
   last_ = wanted;
   last_multiplier_ = output.multiplier;
   is_first_ = false;
@@ -69,10 +74,10 @@ std::optional<LiveImage::Request> LiveImage::next(const core::View& wanted, bool
 
 void LiveImage::record(double ms, bool settled) {
   settled_ = settled;
-  // Images at rest are full and may exceed the budget; the controller learns from their times too.
-  if (options_.budget_ms > 0.0) {
+  if (options_.budget_ms > 0.0 && (state_ == lod::RefinementState::kMoving || !budget_.started)) {
     lod::FrameBudgetOptions budget;
     budget.budget_ms = options_.budget_ms;
+    budget.max_multiplier = options_.most_tolerance / (options_.smallest_side * options_.smallest_side);
     lod::next_multiplier(budget, {last_multiplier_, ms}, budget_);
   }
 }

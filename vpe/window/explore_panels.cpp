@@ -60,11 +60,14 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Drawn by");
   ImGui::SameLine();
-  bool polygons = state.backend == core::Backend::kPolygon;
-  if (widgets.toggle("Triangles", polygons)) state.backend = core::Backend::kPolygon;
-  ImGui::SameLine();
-  bool rays = state.backend == core::Backend::kRay;
-  if (widgets.toggle("Rays", rays)) state.backend = core::Backend::kRay;
+  const auto choice = [&](const char* label, explore::DrawnBy drawn_by, const char* help) {
+    ImGui::SameLine();
+    bool is_chosen = state.drawn_by == drawn_by;
+    if (widgets.toggle(label, is_chosen, help)) state.drawn_by = drawn_by;
+  };
+  choice("Auto", explore::DrawnBy::kAuto, "The quicker of both: rays near the ground where there is no GPU");
+  choice("Triangles", explore::DrawnBy::kPolygon, "By OpenGL");
+  choice("Rays", explore::DrawnBy::kRay, "By ray casting on the processor");
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Stereo");
   ImGui::SameLine();
@@ -291,7 +294,8 @@ void ExploreWindow::draw_status() {
         lod::post_spacing_m(finest, setup_.planet->meta().tile.intervals(), setup_.planet->radius_m());
     std::string line = session_.settings().get("mode").value_or("") + (rays ? " by rays" : " by triangles") +
                        "   level " + std::to_string(finest) + " (" + panel_length_text(spacing_m) +
-                       " posts)   error below " + formatted("%.2f px", r.certificate.shift_bound_px);
+                       " posts)   error below " +
+                       formatted("%.2f px", r.certificate.shift_bound_px / drawn_->request.px_per_screen_px);
     const core::View& drawn = drawn_->request.draw.view;
     line += "   " + (rays ? formatted("%.0f k rays", drawn.width * drawn.height / 1e3)
                           : formatted("%.0f k triangles", static_cast<double>(r.stats.triangles) / 1e3));
@@ -299,7 +303,7 @@ void ExploreWindow::draw_status() {
             formatted("%.0f ms", mean_s * 1e3);
     const std::int64_t loading = r.stats.pages_wanted + r.stats.pages_loading;
     if (loading > 0 && !r.settled) line += "   loading " + std::to_string(loading);
-    if (drawn_->request.draw.coarsening > 1) line += "   coarser while moving";
+    if (!drawn_->request.is_full) line += "   coarser while moving";
     if (drawn_->request.stereo) line += "   (left eye)";
     status_line(line, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   }

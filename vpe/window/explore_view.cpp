@@ -1,10 +1,12 @@
 // The view of the explore window: its images, and marks over them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "vpe/base/number.h"
+#include "vpe/explore/foresight.h"
 #include "vpe/window/explore_window.h"
 
 namespace vpe::window {
@@ -12,7 +14,7 @@ namespace vpe::window {
 void ExploreWindow::request_image() {
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
-  const std::string state = std::string(core::to_string(state_.backend)) +
+  const std::string state = std::string(explore::to_string(state_.drawn_by)) +
                             (state_.stereo ? core::to_string(*state_.stereo) : "") +
                             base::format_number(state_.eye_base_m);
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
@@ -22,7 +24,6 @@ void ExploreWindow::request_image() {
   shown_state_ = state;
   ImageRequest request;
   request.number = ++requested_;
-  request.backend = state_.backend;
   request.stereo = state_.stereo;
   request.eye_base_m =
       state_.eye_base_m > 0 ? state_.eye_base_m : std::max(session_.height_m(), 1.0) / core::kNearestToBase;
@@ -32,23 +33,57 @@ void ExploreWindow::request_image() {
   request.draw.interest = session_.all_interest();
   request.draw.coarsening = next->multiplier;
   request.draw.paging.wait = false;
-  if (const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
-      flight != nullptr)
-    request.flight_time_s = flight->time_s();
+  request.draw.paging.upcoming = foreseen_views(next->view);
+  request.is_auto = state_.drawn_by == explore::DrawnBy::kAuto;
+  request.backend = state_.backend = explore::backend_for(
+      state_.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
+                        session_.pose().alt_m / session_.ground().radius_m, state_.backend});
+  // Beside the finest tiles everywhere, any tolerance would be a leap.
+  const bool is_exact = request.backend == core::Backend::kRay && !request.is_auto &&
+                        request.draw.settings.ray_mode != core::RayMode::kMultires;
+  if (is_exact) request.draw.coarsening = 1;
+  // Tolerances are in pixels of the screen, also where the image has fewer.
+  request.is_full = next->is_full;
+  request.px_per_screen_px = next->side;
+  request.draw.settings.lod_tolerance_px *= next->side;
+  request.draw.settings.ray_cell_px *= next->side;
+  const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
+  if (flight != nullptr) request.flight_time_s = flight->time_s();
   if (const std::string error = recorder_.record_image(request, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));
 }
 
-void ExploreWindow::take_image(double wait_s) {
-  std::optional<DrawnImage> drawn = maker_->take(wait_s);
-  if (!drawn) return;
+// From the flight that plays, else from the motion since the last request.
+std::vector<core::View> ExploreWindow::foreseen_views(const core::View& shown) {
+  constexpr std::array kAhead_s{0.5, 1.0};
+  std::vector<core::View> views;
+  const auto add = [&](const mars::CameraPose& camera) { views.emplace_back(shown).camera = camera; };
+  const double at_s = now_s();
+  const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
+  if (flight != nullptr && flight->is_playing()) {
+    for (const double ahead_s : kAhead_s)
+      add(flight->state_at(flight->time_s() + ahead_s * flight->speed()).camera);
+  } else if (flight == nullptr && last_pose_ && at_s > last_pose_->first) {
+    for (const double ahead_s : kAhead_s) {
+      const auto pose =
+          explore::foreseen({last_pose_->second, session_.pose(), at_s - last_pose_->first}, ahead_s);
+      if (pose) add(mars::to_camera(*pose, session_.ground().radius_m));
+    }
+  }
+  last_pose_ = {at_s, session_.pose()};
+  return views;
+}
+
+bool ExploreWindow::take_image() {
+  std::optional<DrawnImage> drawn = maker_->take();
+  if (!drawn) return false;
   frames_due_ = std::max(frames_due_, 1);
   state_.image_error = drawn->error;
   if (!drawn->error.empty()) {
     live_.record(drawn->seconds * 1e3, true);
     show_message(drawn->error, true);
-    return;
+    return true;
   }
   live_.record(drawn->seconds * 1e3, drawn->result.settled);
   if (const auto& failures = drawn->result.failures; !failures.empty()) {
@@ -63,7 +98,8 @@ void ExploreWindow::take_image(double wait_s) {
   image_times_s_.push_back(drawn_->seconds);
   if (image_times_s_.size() > 20) image_times_s_.pop_front();
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
-  if (saves_image_ && drawn_->request.draw.coarsening == 1.0 && drawn_->result.settled) save_image();
+  if (saves_image_ && drawn_->request.is_full && drawn_->result.settled) save_image();
+  return true;
 }
 
 // Runs the rest of an iteration while a panorama is entered. Returns false outside of panoramas.

@@ -24,6 +24,7 @@ constexpr double kMessage_s = 6;  // for which it is shown
 constexpr double kError_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 constexpr double kKeepSession_s = 2;
+constexpr double kHoverFrame_s = 0.1;  // while only the cursor moves over the view
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -47,7 +48,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       begun_(Clock::now()),
       last_step_(begun_),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
-  state_.backend = setup_.backend;
+  state_.drawn_by = setup_.drawn_by;
   lay_out();
   if (!setup_.session.start)
     session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
@@ -86,26 +87,42 @@ bool ExploreWindow::is_at_rest() const {
 }
 
 bool ExploreWindow::shows_final_image() const {
-  return drawn_ && state_.image_error.empty() && drawn_->result.settled &&
-         drawn_->request.draw.coarsening == 1.0 && maker_->is_idle() &&
-         live_.state() == lod::RefinementState::kWaiting;
+  return drawn_ && state_.image_error.empty() && drawn_->result.settled && drawn_->request.is_full &&
+         maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting;
+}
+
+// Returns how long an iteration may wait for events. A finished image is an event too.
+double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
+  const double since_s = seconds(Clock::now() - last_step_);
+  const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
+  if (guide_.inside() != nullptr) return !guide_.inside()->is_at_rest() || frames_due_ > 0 ? pause_s : rest_s;
+  if (frames_due_ > 0) return std::max(pause_s, next_frame_s_ - now_s());
+  if (!maker_->is_idle()) return std::min(rest_s, kImageWait_s);
+  return moves || live_.state() != lod::RefinementState::kWaiting ? pause_s : rest_s;
+}
+
+// Where the cursor moves over the view alone, little changes but the read-out.
+bool ExploreWindow::is_over_view() const {
+  return view_area_.holds(cursor_.x, cursor_.y) && !ImGui::GetIO().WantCaptureMouse && !state_.help &&
+         !state_.large_map && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
 }
 
 bool ExploreWindow::step(double wait_s) {
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
   const bool plays = flight != nullptr && flight->is_playing();
-  const bool moves = session_.is_going() || plays || was_moving_ || !maker_->is_idle();
-  const double since_s = seconds(Clock::now() - last_step_);
-  const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
+  const bool moves = session_.is_going() || plays || was_moving_;
   const bool is_inside = guide_.inside() != nullptr;
   const bool busy = is_inside ? !guide_.inside()->is_at_rest() || frames_due_ > 0
-                              : moves || frames_due_ > 0 || live_.state() != lod::RefinementState::kWaiting;
+                              : moves || !maker_->is_idle() || frames_due_ > 0 ||
+                                    live_.state() != lod::RefinementState::kWaiting;
   const double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
-  const std::vector<Event> events = display_.events(busy ? pause_s : rest_s);
+  const std::vector<Event> events = display_.events(event_wait_s(moves, rest_s));
   if (display_.should_close()) return false;
   for (const Event& event : events) {
     handle(event);
-    frames_due_ = kFramesAfterChange;
+    const bool hovers = event.kind == Event::Kind::kMove && is_over_view();
+    if (!hovers) next_frame_s_ = 0;
+    frames_due_ = std::max(frames_due_, hovers ? 1 : kFramesAfterChange);
   }
   lay_out();
   const DeviceReading input = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
@@ -129,12 +146,14 @@ bool ExploreWindow::step(double wait_s) {
 
   if (const std::string text = guide_.follow(session_, view_area_); !text.empty()) show_message(text);
 
+  // The next image is drawn while the last one is shown.
+  const bool is_new = take_image();
   request_image();
-  take_image(kImageWait_s);
   if ((shows_map() && !map_.is_at_rest()) || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
-  if (frames_due_ > 0 || session_.is_going() || plays) {
+  if (is_new || (frames_due_ > 0 && now_s() >= next_frame_s_)) {
     draw_frame();
     --frames_due_;
+    next_frame_s_ = frames_due_ > 0 ? 0 : now_s() + kHoverFrame_s;
   }
   return !display_.should_close();
 }
@@ -166,7 +185,7 @@ void ExploreWindow::keep_work(bool is_busy) {
   if (!setup_.keep_session || is_busy || now_s() - session_kept_s_ < kKeepSession_s) return;
   const mars::Pose& p = session_.pose();
   const KeptSession now{{p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg},
-                        state_.backend,
+                        state_.drawn_by,
                         state_.panels,
                         display_.size()};
   if (session_kept_ == now) return;

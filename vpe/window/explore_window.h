@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "paging/planet/planet_file.h"
+#include "vpe/explore/drawn_by.h"
 #include "vpe/explore/files/bookmarks.h"
 #include "vpe/explore/files/preferences.h"
 #include "vpe/explore/files/view_history.h"
@@ -54,7 +55,10 @@ struct ExploreSetup : ShownPlanet {
   // Empty: there is none.
   MakePlanet make_finer;
   explore::SessionOptions session;
-  core::Backend backend = core::Backend::kPolygon;
+  explore::DrawnBy drawn_by = explore::DrawnBy::kAuto;
+  bool has_gpu = false;  // for kAuto
+  // Returns whether rays draw the same image as triangles; for kAuto. Empty: always.
+  std::function<bool(const core::DrawRequest&)> suits_rays;
   // Returns the unit, body-fixed direction of the sun.
   std::function<glm::dvec3(const core::SettingsValues&, const mars::Pose&)> sun;
   OpenPlanet open_planet;  // for files dropped on the window; called on a thread of its own
@@ -78,7 +82,8 @@ struct ExploreSetup : ShownPlanet {
 
 // Holds the state of the window apart from the session.
 struct WindowState {
-  core::Backend backend = core::Backend::kPolygon;
+  explore::DrawnBy drawn_by = explore::DrawnBy::kAuto;
+  core::Backend backend = core::Backend::kPolygon;  // of the last image that was requested
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;  // 0: a thirtieth of the height above ground
   double speed = 1;       // factor on motion by hand
@@ -205,7 +210,7 @@ class ExploreWindow {
   // Holds the state that keep_session() wrote last.
   struct KeptSession {
     std::array<double, 6> pose;  // the fields of mars::Pose
-    core::Backend backend;
+    explore::DrawnBy drawn_by;
     bool panels;
     std::pair<int, int> size;
     bool operator==(const KeptSession&) const = default;
@@ -225,7 +230,10 @@ class ExploreWindow {
   void draw_status();
   void draw_map(int width, int height);
   void request_image();
-  void take_image(double wait_s);
+  std::vector<core::View> foreseen_views(const core::View& shown);
+  bool take_image();  // returns true if there is a new one
+  double event_wait_s(bool moves, double rest_s) const;
+  bool is_over_view() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
   void show_message(std::string text, bool is_error = false);
@@ -255,6 +263,7 @@ class ExploreWindow {
   std::uint64_t requested_ = 0;      // number of the last image request
   std::uint64_t shown_changes_ = 0;  // Session::changes() and the window's state at the last request
   std::string shown_state_;
+  std::optional<std::pair<double, mars::Pose>> last_pose_;  // at the last request, and its time
   ViewArea view_area_;
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
@@ -272,6 +281,7 @@ class ExploreWindow {
   std::chrono::steady_clock::time_point last_step_;
   std::deque<double> image_times_s_;
   int frames_due_ = 3;
+  double next_frame_s_ = 0;  // not before, while only the cursor moves over the view
   bool was_moving_ = false;  // by hand
   std::int64_t frames_ = 0;
   std::int64_t images_ = 0;

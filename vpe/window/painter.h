@@ -18,7 +18,10 @@ namespace vpe::window {
 struct ImageRequest {
   std::uint64_t number = 0;  // of the window's requests, ascending
   core::Backend backend = core::Backend::kPolygon;
+  bool is_auto = false;  // nobody named the backend: it keeps to the tolerance
   core::DrawRequest draw;
+  bool is_full = true;          // not made coarser, nor smaller, to save time
+  double px_per_screen_px = 1;  // of the image, along a side
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;           // with stereo; > 0
   double flight_time_s = 0;        // for the overlay of that name

@@ -48,7 +48,7 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
                              std::span<const core::DrawRequest> images, double radius_m, bool has_gpu) {
   if (options.backend) return {*options.backend, settings};
   const auto for_rays = std::count_if(images.begin(), images.end(), [&](const core::DrawRequest& request) {
-    return glm::length(request.view.camera.position_m) < (1 + kFar) * radius_m &&
+    return glm::length(request.view.camera.position_m) < (1 + core::kRaysReach_radii) * radius_m &&
            core::reaches_horizon(request.view, radius_m);
   });
   const core::Settings for_ray_images = within_tolerance(settings, options);

@@ -113,10 +113,10 @@ const core::KeyRegistry<LastSession>& session_keys() {
        "last planet shown"},
       {"last.pose", Declare::pose<&S::pose>(), "", "last pose of the camera"},
       {"last.backend",
-       Declare::choice<&S::backend>(
-           {core::word(core::to_string(core::Backend::kPolygon), core::Backend::kPolygon),
-            core::word(core::to_string(core::Backend::kRay), core::Backend::kRay)}),
-       "", "last backend that drew"},
+       Declare::choice<&S::drawn_by>({core::word(to_string(DrawnBy::kAuto), DrawnBy::kAuto),
+                                      core::word(to_string(DrawnBy::kPolygon), DrawnBy::kPolygon),
+                                      core::word(to_string(DrawnBy::kRay), DrawnBy::kRay)}),
+       "", "what drew last, or auto"},
   });
   return keys;
 }
