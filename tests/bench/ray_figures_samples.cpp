@@ -56,7 +56,7 @@ std::vector<HintedPixel> hinted_pixels(const Scene& scene, const core::View& vie
   if (sector == nullptr) throw std::runtime_error("the image has no sector above V");
   const std::vector<float> samples = cast_sector(scene, plan, *sector, walk);
   const std::vector<float> finished = cast_image(scene, view);
-  voxel::ThreadLocalTiles tiles(scene.caster->store(), 1);
+  voxel::ThreadLocalTiles tiles(scene.caster->store(), 1, nullptr);
   voxel::FacetFinder finder(walk, tiles);
   voxel::FacetFinder exact_finder(walk, tiles);
   const mars::Axes& axes = view.camera.axes;

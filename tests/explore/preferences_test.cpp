@@ -197,7 +197,7 @@ TEST(LastSession, IsReadBackAsItWasSaved) {
   s.window_width_px = 2560;
   s.planet = "/data/Gale \"crater\".vpe";
   s.pose = mars::Pose{137.4, -4.6, 12345.678901234567, -179.25, -10, 1e-7};
-  s.drawn_by = DrawnBy::kRay;
+  s.drawn_by = core::DrawnBy::kRay;
   s.panels = false;
   ASSERT_EQ(save(s, folder / "explore.toml"), "");
   const LastSession back = read_session(folder / "explore.toml");
@@ -207,14 +207,14 @@ TEST(LastSession, IsReadBackAsItWasSaved) {
   ASSERT_TRUE(back.pose.has_value());
   EXPECT_EQ(back.pose->alt_m, s.pose->alt_m);
   EXPECT_EQ(back.pose->roll_deg, s.pose->roll_deg);
-  EXPECT_EQ(back.drawn_by, DrawnBy::kRay);
+  EXPECT_EQ(back.drawn_by, core::DrawnBy::kRay);
   EXPECT_FALSE(back.panels);
 }
 
 TEST(LastSession, FormerNamesOfBackendsAreRead) {
   const TempDir folder;
   write(folder / "explore.toml", "[last]\nbackend = \"voxel\"\n");
-  EXPECT_EQ(read_session(folder / "explore.toml").drawn_by, DrawnBy::kRay);
+  EXPECT_EQ(read_session(folder / "explore.toml").drawn_by, core::DrawnBy::kRay);
   ASSERT_EQ(save(read_session(folder / "explore.toml"), folder / "explore.toml"), "");
   EXPECT_NE(text_of(folder / "explore.toml").find("backend = \"ray\"  #"), std::string::npos);
 }

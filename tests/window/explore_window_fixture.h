@@ -29,7 +29,7 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     setup.state = folder_ / "state";
     setup.planet = planet_;
     setup.surface = std::make_shared<const paging::Surface>(planet_, std::size_t{32} << 20);
-    setup.drawn_by = explore::drawn_by(backend);
+    setup.drawn_by = core::drawn_by(backend);
     setup.display.width = width;
     setup.display.height = height;
     setup.display.scale = width > 2000 ? 2 : 1;

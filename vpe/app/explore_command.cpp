@@ -114,7 +114,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.display.instead =
       "set DISPLAY to an X server, or work without a window: 'vpe render' draws an image, 'vpe fly' a flight, "
       "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this command on a virtual display";
-  setup.drawn_by = arguments.names_backend ? vpe::explore::drawn_by(arguments.image.backend) : last.drawn_by;
+  setup.drawn_by = arguments.names_backend ? core::drawn_by(arguments.image.backend) : last.drawn_by;
   setup.has_gpu = gl::has_gpu();
   setup.suits_rays = [](const core::DrawRequest& request) {
     return suits_rays(for_window_rays(request, true));

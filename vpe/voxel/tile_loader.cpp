@@ -68,18 +68,18 @@ bool TileLoader::add(const core::View& view, const LackingTiles& lacking, double
                      std::vector<Pager::Want>& wants) {
   const lod::TileTree& tree = caster_.store().planet().tree();
   bool was_dropped = false;
-  const auto want = [&](const Page& page, int shown_level, double more) {
+  const auto want = [&](const Page& page, int level_in_place, double more) {
     if (loaded_.contains(page)) return false;
-    wants.push_back({page, factor * more * spacing_px(view, page.key, shown_level, tree)});
+    wants.push_back({page, factor * more * spacing_px(view, page.key, level_in_place, tree)});
     return true;
   };
-  const auto want_in_steps = [&](const Page& page, int shown_level) {
-    if (page.key.level - shown_level > kStepLevels) {
+  const auto want_in_steps = [&](const Page& page, int level_in_place) {
+    if (page.key.level - level_in_place > kStepLevels) {
       Page step = page;
       step.key = step.paint.key = lod::ancestor(page.key, page.key.level - kStepLevels);
-      want(step, shown_level, kStepUrgency);
+      want(step, level_in_place, kStepUrgency);
     }
-    was_dropped = !want(page, shown_level, 1) || was_dropped;
+    was_dropped = !want(page, level_in_place, 1) || was_dropped;
   };
   for (const AbsentTile& absent : lacking.ground) {
     if (absent.failure) continue;
@@ -88,11 +88,11 @@ bool TileLoader::add(const core::View& view, const LackingTiles& lacking, double
     page.key = tree[absent.tile].key;
     page.family = absent.family;
     page.paint.exaggeration = lacking.exaggeration;
-    const int shown_level = tree[absent.source].key.level;
+    const int level_in_place = tree[absent.source].key.level;
     if (absent.for_single_rays) {
-      was_dropped = !want(page, shown_level, 1) || was_dropped;
+      was_dropped = !want(page, level_in_place, 1) || was_dropped;
     } else {
-      want_in_steps(page, shown_level);
+      want_in_steps(page, level_in_place);
     }
   }
   for (const AbsentPage& absent : lacking.colours) {

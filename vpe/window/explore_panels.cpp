@@ -60,14 +60,14 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Drawn by");
   ImGui::SameLine();
-  const auto choice = [&](const char* label, explore::DrawnBy drawn_by, const char* help) {
+  const auto choice = [&](const char* label, core::DrawnBy drawn_by, const char* help) {
     ImGui::SameLine();
     bool is_chosen = state.drawn_by == drawn_by;
     if (widgets.toggle(label, is_chosen, help)) state.drawn_by = drawn_by;
   };
-  choice("Auto", explore::DrawnBy::kAuto, "The quicker of both: rays near the ground where there is no GPU");
-  choice("Triangles", explore::DrawnBy::kPolygon, "By OpenGL");
-  choice("Rays", explore::DrawnBy::kRay, "By ray casting on the processor");
+  choice("Auto", core::DrawnBy::kAuto, "The quicker of both: rays near the ground where there is no GPU");
+  choice("Triangles", core::DrawnBy::kPolygon, "By OpenGL");
+  choice("Rays", core::DrawnBy::kRay, "By ray casting on the processor");
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Stereo");
   ImGui::SameLine();

@@ -14,7 +14,7 @@ namespace vpe::window {
 void ExploreWindow::request_image() {
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
-  const std::string state = std::string(explore::to_string(state_.drawn_by)) +
+  const std::string state = std::string(core::to_string(state_.drawn_by)) +
                             (state_.stereo ? core::to_string(*state_.stereo) : "") +
                             base::format_number(state_.eye_base_m);
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
@@ -34,10 +34,10 @@ void ExploreWindow::request_image() {
   request.draw.coarsening = next->multiplier;
   request.draw.paging.wait = false;
   request.draw.paging.upcoming = foreseen_views(next->view);
-  request.is_auto = state_.drawn_by == explore::DrawnBy::kAuto;
-  request.backend = state_.backend = explore::backend_for(
-      state_.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
-                        session_.pose().alt_m / session_.ground().radius_m, state_.backend});
+  request.is_auto = state_.drawn_by == core::DrawnBy::kAuto;
+  request.backend = state_.backend =
+      core::backend_for(state_.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
+                                          session_.pose().alt_m / session_.ground().radius_m, state_.backend});
   // Beside the finest tiles everywhere, any tolerance would be a leap.
   const bool is_exact = request.backend == core::Backend::kRay && !request.is_auto &&
                         request.draw.settings.ray_mode != core::RayMode::kMultires;

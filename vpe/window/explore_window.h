@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "paging/planet/planet_file.h"
-#include "vpe/explore/drawn_by.h"
+#include "vpe/core/drawn_by.h"
 #include "vpe/explore/files/bookmarks.h"
 #include "vpe/explore/files/preferences.h"
 #include "vpe/explore/files/view_history.h"
@@ -55,7 +55,7 @@ struct ExploreSetup : ShownPlanet {
   // Empty: there is none.
   MakePlanet make_finer;
   explore::SessionOptions session;
-  explore::DrawnBy drawn_by = explore::DrawnBy::kAuto;
+  core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   bool has_gpu = false;  // for kAuto
   // Returns whether rays draw the same image as triangles; for kAuto. Empty: always.
   std::function<bool(const core::DrawRequest&)> suits_rays;
@@ -82,7 +82,7 @@ struct ExploreSetup : ShownPlanet {
 
 // Holds the state of the window apart from the session.
 struct WindowState {
-  explore::DrawnBy drawn_by = explore::DrawnBy::kAuto;
+  core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   core::Backend backend = core::Backend::kPolygon;  // of the last image that was requested
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;  // 0: a thirtieth of the height above ground
@@ -210,7 +210,7 @@ class ExploreWindow {
   // Holds the state that keep_session() wrote last.
   struct KeptSession {
     std::array<double, 6> pose;  // the fields of mars::Pose
-    explore::DrawnBy drawn_by;
+    core::DrawnBy drawn_by;
     bool panels;
     std::pair<int, int> size;
     bool operator==(const KeptSession&) const = default;

@@ -113,9 +113,10 @@ const core::KeyRegistry<LastSession>& session_keys() {
        "last planet shown"},
       {"last.pose", Declare::pose<&S::pose>(), "", "last pose of the camera"},
       {"last.backend",
-       Declare::choice<&S::drawn_by>({core::word(to_string(DrawnBy::kAuto), DrawnBy::kAuto),
-                                      core::word(to_string(DrawnBy::kPolygon), DrawnBy::kPolygon),
-                                      core::word(to_string(DrawnBy::kRay), DrawnBy::kRay)}),
+       Declare::choice<&S::drawn_by>(
+           {core::word(core::to_string(core::DrawnBy::kAuto), core::DrawnBy::kAuto),
+            core::word(core::to_string(core::DrawnBy::kPolygon), core::DrawnBy::kPolygon),
+            core::word(core::to_string(core::DrawnBy::kRay), core::DrawnBy::kRay)}),
        "", "what drew last, or auto"},
   });
   return keys;

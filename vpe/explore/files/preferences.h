@@ -13,8 +13,8 @@
 
 #include "mars/geodesy/pose.h"
 #include "vpe/base/user_folders.h"
+#include "vpe/core/drawn_by.h"
 #include "vpe/core/registry/key_registry.h"
-#include "vpe/explore/drawn_by.h"
 #include "vpe/explore/files/key_file.h"
 #include "vpe/explore/files/user_files.h"
 #include "vpe/explore/input/gamepad.h"
@@ -53,7 +53,7 @@ struct LastSession {
   int window_height_px = 720;
   std::string planet;              // path of the planet as it was given; empty: none
   std::optional<mars::Pose> pose;  // of the camera
-  DrawnBy drawn_by = DrawnBy::kAuto;
+  core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   bool panels = true;  // map, panels and figures are shown
 };
 

@@ -173,12 +173,12 @@ double ColumnWalk::fallback_error_m(lod::TileTree::Index tile, lod::TileTree::In
   const double reach = reach_m(tile);
   const double sagitta = reach * reach / (4 * camera_.radius_m);
   const double height_range = exaggeration_ * (info.max_height_m - info.min_height_m);
-  double error_m = posts_error_m(source);
+  double geometric_error_m = posts_error_m(source);
   // The facets of tiles wider than the knots' spacing are cut at other lines than the coarser tile's.
   const bool has_even_lines =
       grids_per_side(tree_[source].key.level, tree_.shape().intervals()) < tree_.shape().intervals();
-  if (!has_even_lines) error_m = height_range;
-  return std::min(2 * error_m, height_range + sagitta) + sagitta;
+  if (!has_even_lines) geometric_error_m = height_range;
+  return std::min(2 * geometric_error_m, height_range + sagitta) + sagitta;
 }
 
 void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
@@ -198,10 +198,10 @@ ColumnWalk::Usage ColumnWalk::usage() const {
     if (source == tile || sources.insert(source).second) ++usage.tiles_by_level[level];
     if (source != tile) ++usage.tiles_replaced;
     usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(info, exaggeration_));
-    const double error_m = source == tile ? posts_error_m(tile) : fallback_error_m(tile, source);
-    if (error_m == 0) continue;
-    usage.geometric_error_m = std::max(usage.geometric_error_m, error_m);
-    usage.screen_space_error_px = std::max(usage.screen_space_error_px, in_image_px(error_m, tile));
+    const double geometric_error_m = source == tile ? posts_error_m(tile) : fallback_error_m(tile, source);
+    if (geometric_error_m == 0) continue;
+    usage.geometric_error_m = std::max(usage.geometric_error_m, geometric_error_m);
+    usage.screen_space_error_px = std::max(usage.screen_space_error_px, in_image_px(geometric_error_m, tile));
   }
   return usage;
 }

@@ -1,11 +1,9 @@
-#include "vpe/explore/drawn_by.h"
+#include "vpe/core/drawn_by.h"
 
 #include <gtest/gtest.h>
 
-namespace vpe::explore {
+namespace vpe::core {
 namespace {
-
-using core::Backend;
 
 TEST(DrawnBy, WhatIsNamedDraws) {
   for (const bool has_gpu : {false, true}) {
@@ -36,7 +34,7 @@ TEST(DrawnBy, TheChoiceDoesNotChangeToAndFro) {
   int changes = 0;
   for (int n = 0; n < 100; ++n) {
     const Backend next = backend_for(
-        DrawnBy::kAuto, {.height_radii = core::kRaysReach_radii * (n % 2 == 0 ? 0.95 : 1.05), .now = now});
+        DrawnBy::kAuto, {.height_radii = kRaysReach_radii * (n % 2 == 0 ? 0.95 : 1.05), .now = now});
     changes += next != now ? 1 : 0;
     now = next;
   }
@@ -51,4 +49,4 @@ TEST(DrawnBy, TheChoiceDoesNotChangeToAndFro) {
 }
 
 }  // namespace
-}  // namespace vpe::explore
+}  // namespace vpe::core

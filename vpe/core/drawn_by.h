@@ -7,7 +7,7 @@
 
 #include "vpe/core/backend.h"
 
-namespace vpe::explore {
+namespace vpe::core {
 
 enum class DrawnBy : std::uint8_t { kAuto, kPolygon, kRay };
 
@@ -15,19 +15,19 @@ enum class DrawnBy : std::uint8_t { kAuto, kPolygon, kRay };
 std::string_view to_string(DrawnBy drawn_by);
 
 // Returns the choice of a backend that was named; kAuto if none was.
-DrawnBy drawn_by(std::optional<core::Backend> named);
+DrawnBy drawn_by(std::optional<Backend> named);
 
 // Describes what the choice depends on.
 struct BackendInput {
   bool has_gpu = false;     // triangles are drawn by one
   bool suits_rays = true;   // rays can draw what the settings ask for
   double height_radii = 0;  // of the camera above the sphere, in radii
-  core::Backend now = core::Backend::kPolygon;
+  Backend now = Backend::kPolygon;
 };
 
 // Returns the backend of the next image. kAuto is rays where there is no GPU, rays can draw the image, and the
-// camera is nearer than core::kRaysReach_radii, as for single images; a tenth above or below that height keeps
+// camera is nearer than kRaysReach_radii, as for single images; a tenth above or below that height keeps
 // what draws now, so that the backend does not change to and fro. Pure.
-core::Backend backend_for(DrawnBy drawn_by, const BackendInput& input);
+Backend backend_for(DrawnBy drawn_by, const BackendInput& input);
 
-}  // namespace vpe::explore
+}  // namespace vpe::core
