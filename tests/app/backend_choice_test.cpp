@@ -56,11 +56,25 @@ TEST(BackendChoice, RequestsAboutTrianglesAreDrawnByPolygons) {
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kMarkers; });
   expect_triangles([](auto& r) { r.settings.shading = core::Shading::kFlat; });
   expect_triangles([](auto& r) { r.settings.inspect = core::Inspect::kLevels; });
-  expect_triangles([](auto& r) { r.settings.lod_metric = core::LodMetric::kDistance; });
   expect_triangles([](auto& r) { r.settings.lod_triangles = 1000; });
-  expect_triangles([](auto& r) { r.settings.lod_centre_weight = 1; });
-  expect_triangles([](auto& r) { r.interest.push_back({0, 0, 1000, 1}); });
   expect_triangles([](auto& r) { r.cull_view = r.view; });
+}
+
+// Rays have level control where they draw within a tolerance; beside the finest tiles everywhere it has no effect.
+TEST(BackendChoice, LevelControlIsForRaysWithinATolerance) {
+  const auto expect_rays = [](const auto& change) {
+    core::DrawRequest request = looking(-10);
+    change(request);
+    const BackendChoice chosen = choice({request});
+    EXPECT_EQ(chosen.backend, Backend::kRay);
+    EXPECT_EQ(chosen.settings.values().ray_mode, core::RayMode::kMultires);
+    RenderOptions finest;
+    finest.tolerance_px = 0;
+    EXPECT_EQ(choice({request}, finest).backend, Backend::kPolygon);
+  };
+  expect_rays([](auto& r) { r.settings.lod_metric = core::LodMetric::kDistance; });
+  expect_rays([](auto& r) { r.settings.lod_centre_weight = 1; });
+  expect_rays([](auto& r) { r.interest.push_back({0, 0, 1000, 1}); });
 }
 
 TEST(BackendChoice, RaysKeepToTheTolerance) {
