@@ -239,6 +239,33 @@ TEST_F(TileFallbacksTest, UnreadableTilesAreReadOnce) {
   EXPECT_EQ(reads, 2);
 }
 
+// Tiles for single rays are read by themselves, and their failures are remembered too.
+TEST_F(TileFallbacksTest, TilesForSingleRaysAreHeldOrAbsent) {
+  const lod::TileKey key = tree()[finest()].key;
+  int reads = 0;
+  const auto damaged = paging::PlanetFile::open(path().string(), [&](const lod::TileKey& tile) {
+    if (tile != key) return;
+    ++reads;
+    throw paging::PlanetError("p.vpe: tile " + lod::to_string(tile) + " is damaged");
+  });
+  const HeightGridStore store(damaged, std::size_t{1} << 26);
+  const paging::Surface surface(damaged, std::size_t{1} << 26);
+  const lod::TileKey other = tree()[finest() - 1].key;
+  TileFallbacks never(store, 1, ReadingRule::never());
+  EXPECT_EQ(never.surface_tile(surface, other), nullptr);
+  ASSERT_EQ(never.absent().size(), 1U);
+  EXPECT_TRUE(never.absent()[0].for_single_rays);
+  EXPECT_FALSE(never.absent()[0].failure);
+  for (int image = 0; image < 3; ++image) {
+    TileFallbacks always(store, 1, ReadingRule::always());
+    EXPECT_NE(always.surface_tile(surface, other), nullptr);
+    EXPECT_EQ(always.surface_tile(surface, key), nullptr);
+    ASSERT_EQ(always.absent().size(), 1U);
+    EXPECT_TRUE(always.absent()[0].failure);
+  }
+  EXPECT_EQ(reads, 1);
+}
+
 TEST(ReadingRule, EndsWhenItsTimeIsSpentWithReading) {
   const ReadingRule rule(1e-3, 2);
   EXPECT_TRUE(rule.may_read());

@@ -1,4 +1,4 @@
-// What draws the window: triangles, rays, or the quicker of both as the camera moves.
+// Chooses what draws the window: triangles, rays, or the quicker of both as the camera moves.
 #pragma once
 
 #include <cstdint>

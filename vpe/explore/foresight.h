@@ -1,4 +1,4 @@
-// Where the camera will be, judged by how it has moved.
+// Foresees where the camera will be from how it has moved.
 #pragma once
 
 #include <optional>

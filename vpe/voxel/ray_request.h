@@ -1,4 +1,4 @@
-// What a request means for the ray backend: what it cannot draw, how it casts, and what an image takes. Pure.
+// Interprets requests for the ray backend: what it cannot draw, how it casts, and what an image takes. Pure.
 #pragma once
 
 #include <cstddef>

@@ -46,8 +46,15 @@ void TileLoader::load(const Page& page) const {
   }
   const lod::TileTree& tree = caster_.store().planet().tree();
   const auto tile = static_cast<lod::TileTree::Index>(tree.find(page.key) - tree.tiles().data());
-  const bool is_read = caster_.store().read(tile, page.family, page.paint.exaggeration);
-  if (is_read && page.kind == Page::Kind::kSurface) caster_.surface().tile(page.key, page.paint.exaggeration);
+  if (page.kind == Page::Kind::kGrids) {
+    caster_.store().read(tile, page.family, page.paint.exaggeration);
+    return;
+  }
+  try {
+    caster_.surface().tile(page.key, page.paint.exaggeration);
+  } catch (const paging::PlanetError& e) {
+    caster_.store().record_failure(tile, e.what());
+  }
 }
 
 bool TileLoader::begin(const core::DrawRequest& request) {

@@ -70,7 +70,7 @@ class ColumnWalk {
     double screen_space_error_px = 0;
     double geometric_error_m = 0;  // largest of the tiles
     double steepest_slope = 0;     // bound of the tangent of the slope of the reference surface in the tiles
-    int tiles_replaced = 0;        // cast with an ancestor's posts, or replaced by their children
+    int tiles_replaced = 0;        // cast with the posts of an ancestor
     // Merges the usage of another image of nearly the same view: takes the larger of both counts of each level,
     // and of both errors.
     void add(const Usage& other);

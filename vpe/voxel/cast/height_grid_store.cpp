@@ -121,11 +121,15 @@ bool HeightGridStore::read(Tile tile, LineFamily family, double exaggeration) co
     if (!held_grids(tile, exaggeration)) grids(tile, family, exaggeration);
     return true;
   } catch (const paging::PlanetError& e) {
-    const std::lock_guard lock(failures_mutex_);
-    failures_.emplace(tile, e.what());
-    any_failed_ = true;
+    record_failure(tile, e.what());
     return false;
   }
+}
+
+void HeightGridStore::record_failure(Tile tile, const std::string& why) const {
+  const std::lock_guard lock(failures_mutex_);
+  failures_.emplace(tile, why);
+  any_failed_ = true;
 }
 
 const HeightGridStore::Pointer<float>& ThreadLocalTiles::grids(lod::TileTree::Index tile, LineFamily family) {

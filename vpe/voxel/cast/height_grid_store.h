@@ -53,6 +53,8 @@ class HeightGridStore {
   // Reads a tile in a family, unless any family of it is held. Returns false and records the failure if it cannot
   // be read.
   bool read(Tile tile, LineFamily family, double exaggeration) const;
+  // Records that a tile cannot be read, for readers of other forms of it.
+  void record_failure(Tile tile, const std::string& why) const;
 
   std::size_t bytes_resident() const;
   std::size_t budget_bytes() const { return budget_; }

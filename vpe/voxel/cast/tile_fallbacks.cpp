@@ -99,8 +99,13 @@ std::shared_ptr<const paging::SurfaceTile> TileFallbacks::surface_tile(const pag
   const auto tile = static_cast<Tile>(tree_.find(key) - tree_.tiles().data());
   if (!store_.failure(tile)) {
     if (auto held = surface.held_tile(key, exaggeration_)) return held;
-    if (rule_.may_read() && read(tile, LineFamily::kColumns))
-      return rule_.timed([&] { return surface.tile(key, exaggeration_); });
+    if (rule_.may_read()) {
+      try {
+        return rule_.timed([&] { return surface.tile(key, exaggeration_); });
+      } catch (const paging::PlanetError& e) {
+        store_.record_failure(tile, e.what());
+      }
+    }
   }
   const std::unique_lock lock(mutex_);
   absent_for_single_rays_.insert(tile);

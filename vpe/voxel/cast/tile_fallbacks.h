@@ -47,8 +47,8 @@ class TileFallbacks {
  public:
   using Tile = lod::TileTree::Index;
 
-  // Where the rule forbids to read, the tile below the camera is read nevertheless, on which the image depends most,
-  // unless the image is a hint: one that shall only find what is absent. `store` must outlive this.
+  // Serves one image. The tile below the camera is read even where the rule forbids it, as the image depends on it
+  // most, unless the image is a hint: one that shall only find what is absent. `store` must outlive this.
   enum class Purpose : std::uint8_t { kImage, kHint };
   TileFallbacks(const HeightGridStore& store, double exaggeration, ReadingRule rule,
                 Purpose purpose = Purpose::kImage);

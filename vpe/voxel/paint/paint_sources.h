@@ -20,7 +20,7 @@ namespace vpe::voxel {
 struct PaintPage {
   lod::TileKey key;
   bool is_image = false;
-  // Of posts: the exaggeration, and the sun where shadows are cast, else 0.
+  // Describe posts: the exaggeration, and the sun where shadows are cast, else 0.
   double exaggeration = 1;
   glm::dvec3 sun{0, 0, 0};
   bool operator==(const PaintPage&) const = default;
