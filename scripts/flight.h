@@ -1,9 +1,9 @@
-// Flights as text: waypoints, head angles, settings and regions of interest at times.
+// Flights as text: waypoints, head angles, settings, regions of interest and views at times.
 //
 // One command a line, `#` starts a comment, words are split by blanks, lines end with LF or CRLF, UTF-8 (a byte
 // order mark is skipped). Degrees, metres, seconds from the start; numbers are the same in every locale.
 //
-//   flight 1                                  format version, the first command
+//   flight 1.1                                format version, the first command; 1 where no view has a time
 //   view fov=60 size=1280x720 fps=30          at most once, before the first `at`; each key may be left out
 //   at 0   pose lon=-74 lat=-13.5 alt=12000 yaw=90 pitch=-15 roll=0
 //   at 8   pose lon=-68 lat=-13.2 height=3000 yaw=100 pitch=-10 roll=-20
@@ -12,10 +12,18 @@
 //                                             keeps the next character unchanged
 //   at 10  look yaw=40 pitch=5                head angles relative to the platform
 //   at 12  interest lon=-67 lat=-13 radius=40000 levels=+1
+//   at 14  view fov=30 backend=ray eyes=sbs base=2 size=1920x1080    version 1.1; each key may be left out
 //   at 20  end                                the last command; without it, the flight ends at its last time
 //
 // `pose` needs lon, lat and one of alt (above the sphere) and height (above the terrain); angles left out are
-// 0. Times never run backwards. There is at most one pose and one look at a time, and at least one pose in all.
+// 0. Times never run backwards. There is at most one pose, one look and one view at a time, and at least one pose
+// in all.
+//
+// `view` at a time says how images are drawn: `fov` (vertical), `backend` (polygon, ray, or auto: the program
+// chooses), `eyes` (off, or the layout of a stereo pair: sbs, ou, anaglyph), `base` between the eyes (0: follows
+// the height above the ground) and `size` of an image. The field of view changes smoothly from one such line to
+// the next, beginning with that of the `view` line without a time, so a zoom lasts as long as the time between
+// them; two equal ones hold it (scripts/path.h). The other keys hold from their time on, as settings do.
 //
 // Typical usage:
 //   const ParsedFlight parsed = parse_flight(text, "tour.flight");
@@ -23,6 +31,7 @@
 //   if (parsed.flight) write(to_text(*parsed.flight));
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +39,9 @@
 
 #include "mars/geodesy/pose.h"
 #include "scripts/frame_rate.h"
+#include "vpe/core/drawn_by.h"
 #include "vpe/core/interest.h"
+#include "vpe/core/stereo.h"
 
 namespace scripts {
 
@@ -40,6 +51,13 @@ struct FlightLimits {
   static constexpr double kMaxAlt_m = 1e10;
   static constexpr double kMaxRadius_m = vpe::core::InterestLimits::kMaxRadius_m;  // of a region of interest
   static constexpr int kMaxLevels = vpe::core::InterestLimits::kMaxLevels;
+  static constexpr double kMaxEyeBase_m = 1e9;
+};
+
+// The versions of the format. Both are read. A flight is written in the oldest one that can hold it.
+enum class FlightVersion : std::uint8_t {
+  k1,
+  k1_1,  // also `view` at a time
 };
 
 // Holds the `view` line: how the flight is filmed.
@@ -93,6 +111,39 @@ struct InterestCommand {
   bool operator==(const InterestCommand&) const = default;
 };
 
+// Says for how many eyes images are drawn.
+struct Eyes {
+  std::optional<vpe::core::StereoLayout> layout;  // nullopt: one image for both
+
+  bool operator==(const Eyes&) const = default;
+};
+
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+
+  bool operator==(const ImageSize&) const = default;
+};
+
+// Says how images are drawn. A member without a value says nothing.
+struct ViewState {
+  std::optional<double> fov_deg;  // vertical
+  std::optional<ImageSize> size;
+  std::optional<vpe::core::DrawnBy> backend;  // kAuto: the program chooses
+  std::optional<Eyes> eyes;
+  std::optional<double> eye_base_m;  // 0: follows the height above the ground
+
+  bool operator==(const ViewState&) const = default;
+};
+
+// Holds a `view` line with a time. At least one member of the view has a value.
+struct ViewCommand {
+  double time_s = 0;
+  ViewState view;
+
+  bool operator==(const ViewCommand&) const = default;
+};
+
 // Holds a whole flight. Each list is in ascending order of time; parse_flight() ensures it.
 struct Flight {
   FlightView view;
@@ -100,10 +151,14 @@ struct Flight {
   std::vector<HeadCommand> heads;
   std::vector<SetCommand> sets;
   std::vector<InterestCommand> interests;
+  std::vector<ViewCommand> views;
   std::optional<double> end_s;
 
   bool operator==(const Flight&) const = default;
 };
+
+// Returns the oldest version that holds a flight: k1 if no view has a time.
+FlightVersion version_of(const Flight& flight);
 
 // Returns the time of the end, or the last time in the flight.
 double duration_s(const Flight& flight);
@@ -128,7 +183,7 @@ struct ParsedFlight {
 // Parses any text, also binary data. `name` is the file's name in errors.
 ParsedFlight parse_flight(std::string_view text, const std::string& name);
 
-// Writes a flight as text. parse_flight(to_text(flight)) == flight for every flight that parse_flight()
+// Writes a flight as text, in the version of version_of(). parse_flight(to_text(flight)) == flight for every flight that parse_flight()
 // returns.
 std::string to_text(const Flight& flight);
 
@@ -138,7 +193,8 @@ std::string to_line(const Waypoint& waypoint);
 std::string to_line(const HeadCommand& head);
 std::string to_line(const SetCommand& set);
 std::string to_line(const InterestCommand& interest);
+std::string to_line(const ViewCommand& command);
 std::string end_line(double time_s);
-std::string version_line();
+std::string version_line(FlightVersion version);
 
 }  // namespace scripts

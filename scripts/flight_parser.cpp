@@ -5,6 +5,7 @@
 #include <span>
 
 #include "scripts/flight.h"
+#include "scripts/flight_words.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
@@ -14,98 +15,10 @@ namespace scripts {
 using vpe::base::format_number;
 using vpe::base::parse_integer;
 using vpe::base::parse_number;
+using vpe::core::DrawnBy;
 using vpe::core::ViewLimits;
 
 namespace {
-
-using Words = std::vector<std::string>;
-
-// Quotes what was found. Bytes that a terminal might interpret are replaced.
-std::string quote(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string quoted = "\"";
-  for (const char c : text.substr(0, kLongest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    quoted += byte >= 0x20 && byte < 0x7f ? c : '?';
-  }
-  return quoted + (text.size() > kLongest ? "...\"" : "\"");
-}
-
-constexpr std::string_view kBlanks = " \t\r\v\f";
-
-// Splits a line into words without their quotes. Sets `fault` to what was expected when a quote is wrong.
-Words split_words(std::string_view line, std::string& fault) {
-  Words words;
-  for (;;) {
-    const std::size_t begin = line.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos || line[begin] == '#') return words;
-    line.remove_prefix(begin);
-    std::string& word = words.emplace_back();
-    std::size_t at = 0;
-    while (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
-      // Only the first equals sign can be before a quoted value.
-      const bool opens =
-          line[at] == '=' && word.find('=') == std::string::npos && line.substr(at + 1).starts_with('"');
-      word += line[at++];
-      if (!opens) continue;
-      for (++at; at < line.size() && line[at] != '"'; ++at) {
-        if (line[at] == '\\' && at + 1 < line.size()) ++at;
-        word += line[at];
-      }
-      if (at == line.size()) {
-        fault = "a closing quote after " + quote(word);
-        return {};
-      }
-      ++at;
-      if (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
-        fault = "a blank after a closing quote, found " + quote(line.substr(at));
-        return {};
-      }
-      break;
-    }
-    line.remove_prefix(at);
-  }
-}
-
-struct KeyValue {
-  std::string_view key;
-  std::string_view value;
-};
-
-std::optional<KeyValue> split_key_value(std::string_view word) {
-  const std::size_t equals = word.find('=');
-  if (equals == 0 || equals == std::string_view::npos) return std::nullopt;
-  return KeyValue{word.substr(0, equals), word.substr(equals + 1)};
-}
-
-// Describes a number that a command may have.
-struct Field {
-  std::string_view key;
-  double min = 0;
-  double max = 0;
-  bool whole = false;
-  double value = 0;
-  bool given = false;
-};
-
-std::string what_is_allowed(const Field& field) {
-  return std::string(field.key) + (field.whole ? "=WHOLE NUMBER" : "=NUMBER") + " from " +
-         format_number(field.min) + " to " + format_number(field.max);
-}
-
-bool read(Field& field, std::string_view text) {
-  const std::optional<double> number = parse_number(text);
-  if (!number || *number < field.min || *number > field.max) return false;
-  if (field.whole && std::nearbyint(*number) != *number) return false;
-  field.value = *number;
-  return true;
-}
-
-std::string join_keys(std::span<const Field> fields) {
-  std::string keys;
-  for (const Field& field : fields) keys.append(keys.empty() ? "" : ", ").append(field.key);
-  return keys;
-}
 
 class Parser {
  public:
@@ -129,7 +42,7 @@ class Parser {
     }
     line_ = std::max(line_, 1);
     if (!version_seen_) {
-      fail("the first command \"flight 1\", found an empty file");
+      fail("the first command \"flight 1\" or \"flight 1.1\", found an empty file");
     } else if (flight_.waypoints.empty() && errors_.empty()) {
       fail("at least one pose (at T pose lon=.. lat=.. alt=..), found none in the file");
     }
@@ -145,11 +58,16 @@ class Parser {
   }
 
   bool version(const Words& words) {
-    version_seen_ = words.size() == 2 && words[0] == "flight" && words[1] == "1";
-    if (version_seen_) return true;
-    const bool other = words.size() == 2 && words[0] == "flight" && parse_integer(words[1]).has_value();
-    fail(other ? "\"flight 1\" (this program reads version 1 only), found version " + std::string(words[1])
-               : "the first command \"flight 1\", found " + quote(words[0]));
+    const bool named = words.size() == 2 && words[0] == "flight";
+    version_seen_ = named && (words[1] == "1" || words[1] == "1.1");
+    if (version_seen_) {
+      version_ = words[1] == "1" ? FlightVersion::k1 : FlightVersion::k1_1;
+      return true;
+    }
+    const bool other = named && parse_number(words[1]).has_value();
+    fail(other ? "\"flight 1\" or \"flight 1.1\" (this program reads versions 1 and 1.1), found version " +
+                     words[1]
+               : "the first command \"flight 1\" or \"flight 1.1\", found " + quote(words[0]));
     return false;
   }
 
@@ -165,26 +83,38 @@ class Parser {
     if (time_seen_) return fail("the view line before the first \"at\"");
     view_seen_ = true;
     std::array fields{Field{"fov", ViewLimits::kMinFov_deg, ViewLimits::kMaxFov_deg}};
-    Words numbers;
-    std::optional<std::string_view> size, fps;
-    for (const std::string_view word : std::span(words).subspan(1)) {
-      const std::optional<KeyValue> pair = split_key_value(word);
-      std::optional<std::string_view>* own =
-          pair && pair->key == "size" ? &size : (pair && pair->key == "fps" ? &fps : nullptr);
-      if (own == nullptr) {
-        numbers.emplace_back(word);
-      } else if (own->has_value()) {
-        fail(std::string(pair->key) + " once, found it again");
-      } else {
-        *own = pair->value;
+    std::array texts{TextField{"size"}, TextField{"fps"}};
+    if (read_fields(take_texts(words, 1, texts), fields, texts) && fields[0].given)
+      flight_.view.fov_deg = fields[0].value;
+    const auto& [size, fps] = texts;
+    if (size.value) {
+      if (const std::optional<ImageSize> read = read_size(*size.value)) {
+        flight_.view.width = read->width;
+        flight_.view.height = read->height;
       }
     }
-    if (read_fields(numbers, fields, ", size, fps") && fields[0].given) flight_.view.fov_deg = fields[0].value;
-    if (size) read_size(*size);
-    if (fps) read_fps(*fps);
+    if (fps.value) read_fps(*fps.value);
   }
 
-  void read_size(std::string_view text) {
+  // Moves values of keys that are not numbers into `texts`. Returns the other words from `first` on.
+  Words take_texts(const Words& words, std::size_t first, std::span<TextField> texts) {
+    Words others;
+    for (const std::string& word : std::span(words).subspan(first)) {
+      const std::optional<KeyValue> pair = split_key_value(word);
+      const auto own = std::find_if(texts.begin(), texts.end(),
+                                    [&](const TextField& text) { return pair && text.key == pair->key; });
+      if (own == texts.end()) {
+        others.push_back(word);
+      } else if (own->value) {
+        fail(std::string(pair->key) + " once, found it again");
+      } else {
+        own->value = pair->value;
+      }
+    }
+    return others;
+  }
+
+  std::optional<ImageSize> read_size(std::string_view text) {
     const std::size_t x = text.find('x');
     const auto side = [](std::string_view digits) {
       const std::optional<std::int64_t> value = parse_integer(digits);
@@ -192,12 +122,10 @@ class Parser {
     };
     const int width = side(text.substr(0, x));
     const int height = x == std::string_view::npos ? 0 : side(text.substr(x + 1));
-    if (width == 0 || height == 0) {
-      return fail("size=WIDTHxHEIGHT, each from 1 to " + std::to_string(ViewLimits::kMaxSide_px) + ", found " +
-                  quote(text));
-    }
-    flight_.view.width = width;
-    flight_.view.height = height;
+    if (width > 0 && height > 0) return ImageSize{width, height};
+    fail("size=WIDTHxHEIGHT, each from 1 to " + std::to_string(ViewLimits::kMaxSide_px) + ", found " +
+         quote(text));
+    return std::nullopt;
   }
 
   void read_fps(std::string_view text) {
@@ -210,7 +138,7 @@ class Parser {
   }
 
   void timed(const Words& words) {
-    if (words.size() < 3) return fail("at TIME followed by pose, look, set, interest or end");
+    if (words.size() < 3) return fail("at TIME followed by " + std::string(commands()));
     const std::optional<double> time_s = parse_number(words[1]);
     if (!time_s || *time_s < 0 || *time_s > FlightLimits::kMaxTime_s) {
       return fail("a time in seconds from 0 to " + format_number(FlightLimits::kMaxTime_s) +
@@ -229,7 +157,13 @@ class Parser {
     if (name == "set") return set(arguments);
     if (name == "interest") return interest(arguments);
     if (name == "end") return end(arguments);
-    fail("pose, look, set, interest or end after the time, found " + quote(name));
+    if (name == "view") return timed_view(arguments);
+    fail(std::string(commands()) + " after the time, found " + quote(name));
+  }
+
+  std::string_view commands() const {
+    return version_ == FlightVersion::k1 ? "pose, look, set, interest or end"
+                                         : "pose, look, set, interest, view or end";
   }
 
   void pose(const Words& words) {
@@ -301,15 +235,55 @@ class Parser {
         {time_s_, {lon.value, lat.value, radius.value, static_cast<int>(levels.value)}});
   }
 
+  void timed_view(const Words& words) {
+    if (version_ == FlightVersion::k1)
+      return fail("\"flight 1.1\" as the first command of a flight with \"at TIME view\", found \"flight 1\"");
+    std::array fields{Field{"fov", ViewLimits::kMinFov_deg, ViewLimits::kMaxFov_deg},
+                      Field{"base", 0, FlightLimits::kMaxEyeBase_m}};
+    std::array texts{TextField{"size"}, TextField{"backend"}, TextField{"eyes"}};
+    const std::size_t errors_before = errors_.size();
+    (void)read_fields(take_texts(words, 0, texts), fields, texts);
+    const auto& [fov, base] = fields;
+    const auto& [size, backend, eyes] = texts;
+    ViewState view;
+    if (fov.given) view.fov_deg = fov.value;
+    if (base.given) view.eye_base_m = base.value;
+    if (size.value) view.size = read_size(*size.value);
+    if (backend.value) view.backend = read_backend(*backend.value);
+    if (eyes.value) view.eyes = read_eyes(*eyes.value);
+    if (errors_.size() != errors_before || full()) return;
+    if (words.empty()) return fail("at least one of fov, base, size, backend, eyes after \"view\"");
+    if (!flight_.views.empty() && flight_.views.back().time_s == time_s_)
+      return fail("one view at " + format_number(time_s_) + " s, found a second one");
+    flight_.views.push_back({time_s_, view});
+  }
+
+  std::optional<DrawnBy> read_backend(std::string_view text) {
+    const std::optional<vpe::core::Backend> backend = vpe::core::parse_backend(text);
+    if (backend || text == to_string(DrawnBy::kAuto)) return vpe::core::drawn_by(backend);
+    fail("backend=polygon, backend=ray or backend=auto, found " + quote(text));
+    return std::nullopt;
+  }
+
+  std::optional<Eyes> read_eyes(std::string_view text) {
+    const std::optional<vpe::core::StereoLayout> layout = vpe::core::parse_stereo(text);
+    if (layout || text == "off") return Eyes{layout};
+    fail("eyes=off, eyes=sbs, eyes=ou or eyes=anaglyph, found " + quote(text));
+    return std::nullopt;
+  }
+
   void end(const Words& words) {
     if (!words.empty()) return fail("nothing after \"end\", found " + quote(words[0]));
     flight_.end_s = time_s_;
     ended_ = true;
   }
 
-  // Reads KEY=NUMBER words into `fields`. Returns false when one of them is wrong.
-  bool read_fields(const Words& words, std::span<Field> fields, const char* other_keys = "") {
+  // Reads KEY=NUMBER words into `fields`. Returns false when one of them is wrong. `texts` are the other keys that
+  // the command allows.
+  bool read_fields(const Words& words, std::span<Field> fields, std::span<const TextField> texts = {}) {
     const std::size_t errors_before = errors_.size();
+    std::string other_keys;
+    for (const TextField& text : texts) other_keys.append(", ").append(text.key);
     for (const std::string_view word : words) {
       const std::optional<KeyValue> pair = split_key_value(word);
       const auto field = std::find_if(fields.begin(), fields.end(),
@@ -337,6 +311,7 @@ class Parser {
   std::string name_;
   int line_ = 0;
   double time_s_ = 0;
+  FlightVersion version_ = FlightVersion::k1;
   bool version_seen_ = false;
   bool view_seen_ = false;
   bool time_seen_ = false;
@@ -361,6 +336,7 @@ double duration_s(const Flight& flight) {
   include(flight.heads);
   include(flight.sets);
   include(flight.interests);
+  include(flight.views);
   return last_s;
 }
 

@@ -30,13 +30,21 @@ std::string value_text(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
 }  // namespace
 
-std::string version_line() { return "flight 1\n"; }
+FlightVersion version_of(const Flight& flight) {
+  return flight.views.empty() ? FlightVersion::k1 : FlightVersion::k1_1;
+}
+
+std::string version_line(FlightVersion version) {
+  return version == FlightVersion::k1 ? "flight 1\n" : "flight 1.1\n";
+}
 
 std::string to_line(const FlightView& view) {
-  return "view fov=" + format_number(view.fov_deg) + " size=" + std::to_string(view.width) + "x" +
-         std::to_string(view.height) + " fps=" + to_text(view.fps) + "\n";
+  return "view fov=" + format_number(view.fov_deg) + " size=" + size_text(view.width, view.height) +
+         " fps=" + to_text(view.fps) + "\n";
 }
 
 std::string to_line(const Waypoint& w) {
@@ -66,6 +74,18 @@ std::string to_line(const InterestCommand& interest) {
                   {"levels", interest.region.levels}});
 }
 
+std::string to_line(const ViewCommand& command) {
+  const ViewState& view = command.view;
+  std::string line = "at " + format_number(command.time_s) + " view";
+  if (view.fov_deg) line += " fov=" + format_number(*view.fov_deg);
+  if (view.size) line += " size=" + size_text(view.size->width, view.size->height);
+  if (view.backend) line.append(" backend=").append(vpe::core::to_string(*view.backend));
+  if (view.eyes)
+    line.append(" eyes=").append(view.eyes->layout ? vpe::core::to_string(*view.eyes->layout) : "off");
+  if (view.eye_base_m) line += " base=" + format_number(*view.eye_base_m);
+  return line + "\n";
+}
+
 std::string end_line(double time_s) { return at_line(time_s, "end", {}); }
 
 std::string to_text(const Flight& flight) {
@@ -77,9 +97,10 @@ std::string to_text(const Flight& flight) {
   add(flight.heads);
   add(flight.sets);
   add(flight.interests);
+  add(flight.views);
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 
-  std::string text = version_line() + to_line(flight.view);
+  std::string text = version_line(version_of(flight)) + to_line(flight.view);
   for (const auto& [time_s, line] : lines) text += line;
   if (flight.end_s) text += end_line(*flight.end_s);
   return text;

@@ -41,14 +41,42 @@ void LineFile::fail(const char* operation) const {
                            "; check the folder, its permissions and the space left");
 }
 
-FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view, LineFile::Mode mode)
-    : file_(path, mode) {
-  file_.write(version_line() + "# log of vpe\n" + to_line(view));
+FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view, LineFile::Mode mode,
+                     FlightVersion version)
+    : file_(path, mode), version_(version) {
+  file_.write(version_line(version) + "# log of vpe\n" + to_line(view));
+}
+
+// Returns the lines for a view: what has changed, and always the field of view. Playback interpolates between fields
+// of view, so one that changes is first held up to the last frame.
+std::string FlightLog::view_lines(double time_s, const ViewState& view) {
+  ViewState changed;
+  const auto take = [](const auto& seen, auto& written, auto& to) {
+    if (!seen || seen == written) return;
+    to = written = seen;
+  };
+  const std::optional<double> before_deg = view_.view.fov_deg;
+  take(view.fov_deg, view_.view.fov_deg, changed.fov_deg);
+  take(view.size, view_.view.size, changed.size);
+  take(view.backend, view_.view.backend, changed.backend);
+  take(view.eyes, view_.view.eyes, changed.eyes);
+  take(view.eye_base_m, view_.view.eye_base_m, changed.eye_base_m);
+  if (changed == ViewState{}) return {};
+  if (version_ == FlightVersion::k1) throw std::logic_error("a log of version 1 has no views");
+  std::string lines;
+  if (changed.fov_deg && before_deg && view_.time_s != *last_frame_s_) {
+    ViewState held;
+    held.fov_deg = before_deg;
+    lines = to_line(ViewCommand{*last_frame_s_, held});
+  }
+  changed.fov_deg = view_.view.fov_deg;
+  view_.time_s = last_frame_s_ ? time_s : 0;
+  return lines + to_line(ViewCommand{view_.time_s, changed});
 }
 
 void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& head,
-                      const vpe::core::Settings& settings,
-                      std::span<const vpe::core::InterestRegion> interest) {
+                      const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest,
+                      const ViewState& view) {
   const HeadCommand turned{time_s, head.yaw_deg, head.pitch_deg, head.roll_deg};
   const bool moved =
       head.yaw_deg != head_.yaw_deg || head.pitch_deg != head_.pitch_deg || head.roll_deg != head_.roll_deg;
@@ -58,6 +86,7 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
     head_.time_s = *last_frame_s_;
     lines += to_line(head_);
   }
+  lines += view_lines(time_s, view);
   lines += to_line(Waypoint{.time_s = time_s,
                             .lon_deg = pose.lon_deg,
                             .lat_deg = pose.lat_deg,

@@ -40,25 +40,27 @@ class LineFile {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> live_;
 };
 
-// Writes a flight with one pose for each frame (`--log F.flight`). The second line is the comment "# log of
+// Writes a flight with one pose for each frame (`--log F.flight`), and with its view where that has changed. The second line is the comment "# log of
 // vpe", by which logs are told from flights. Once the first frame is written, a live file is a valid flight at
 // any moment, also without end(). Replayed at the same times it gives the same poses to
 // the bit (scripts/path.h). Members throw what LineFile throws.
 //
 // Typical usage:
-//   FlightLog log("flight.flight", flight.view);
-//   for (const Frame& f : frames) log.frame(f.time_s, f.state.pose, f.state.head, f.settings);
+//   FlightLog log("flight.flight", flight.view, LineFile::Mode::kLive, FlightVersion::k1_1);
+//   for (const Frame& f : frames) log.frame(f.time_s, f.state.pose, f.state.head, f.settings, {}, f.state.view);
 //   log.end(duration_s);
 class FlightLog {
  public:
   FlightLog(const std::filesystem::path& path, const FlightView& view,
-            LineFile::Mode mode = LineFile::Mode::kLive);
+            LineFile::Mode mode = LineFile::Mode::kLive, FlightVersion version = FlightVersion::k1);
 
-  // Writes the pose, and head and settings where they have changed since the last frame. Times must ascend.
+  // Writes the pose, and head, settings and view where they have changed since the last frame. Times must ascend.
   // `interest` are all regions so far; those that the last frame did not have are written. (A flight cannot
-  // remove a region.)
+  // remove a region.) Members of `view` without a value are as in the last frame; those of the first view hold
+  // from 0 s on. Throws std::logic_error for a view in a log of version 1.
   void frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& head,
-             const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {});
+             const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {},
+             const ViewState& view = {});
 
   // Writes a comment line, for people and for programs that can read it. Replay ignores it. Line ends become
   // blanks.
@@ -68,11 +70,15 @@ class FlightLog {
   void end(double time_s);
 
  private:
+  std::string view_lines(double time_s, const ViewState& view);
+
   LineFile file_;
+  FlightVersion version_;
   std::optional<double> last_frame_s_;
-  HeadCommand head_{.time_s = -1};  // last one written, or straight ahead
-  vpe::core::Settings settings_;    // last ones written
-  std::size_t regions_ = 0;         // written so far
+  HeadCommand head_{.time_s = -1};              // last one written, or straight ahead
+  vpe::core::Settings settings_;                // last ones written
+  ViewCommand view_{.time_s = -1, .view = {}};  // all that was written so far, and when last
+  std::size_t regions_ = 0;                     // written so far
 };
 
 }  // namespace scripts

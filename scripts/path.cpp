@@ -124,6 +124,24 @@ std::span<const Command> up_to(const std::vector<Command>& commands, double time
   return {commands.begin(), end};
 }
 
+double half_fov_rad(double fov_deg) { return 0.5 * fov_deg * mars::kRadiansPerDegree; }
+
+// Adds to each command what those before it say.
+std::vector<ViewCommand> accumulated(std::vector<ViewCommand> views) {
+  const auto keep = [](auto& now, const auto& before) {
+    if (!now) now = before;
+  };
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    ViewState& now = views[i].view;
+    const ViewState& before = views[i - 1].view;
+    keep(now.size, before.size);
+    keep(now.backend, before.backend);
+    keep(now.eyes, before.eyes);
+    keep(now.eye_base_m, before.eye_base_m);
+  }
+  return views;
+}
+
 }  // namespace
 
 std::vector<Path::Knot> Path::knots_of(const Flight& flight, const TerrainHeight& terrain_height_m) const {
@@ -152,13 +170,33 @@ Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_h
       heads_(held_at_ends(flight.heads.empty() ? std::vector<HeadCommand>{HeadCommand{}} : flight.heads,
                           duration_s_)),
       interests_(flight.interests),
+      views_(accumulated(flight.views)),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),
                 aligned(map(knots_, [](const Knot& knot) { return attitude_of(knot.pose); }))),
       alt_m_(times_of(knots_), map(knots_, [](const Knot& knot) { return knot.pose.alt_m; })),
       head_yaw_deg_(angle_spline(heads_, &HeadCommand::yaw_deg)),
       head_pitch_deg_(angle_spline(heads_, &HeadCommand::pitch_deg)),
-      head_roll_deg_(angle_spline(heads_, &HeadCommand::roll_deg)) {}
+      head_roll_deg_(angle_spline(heads_, &HeadCommand::roll_deg)) {
+  for (const ViewCommand& command : flight.views) {
+    if (!command.view.fov_deg) continue;
+    if (fovs_.empty() && command.time_s > 0) fovs_.push_back({0, flight.view.fov_deg});
+    fovs_.push_back({command.time_s, *command.view.fov_deg});
+  }
+  if (fovs_.empty()) return;
+  fovs_ = held_at_ends(std::move(fovs_), duration_s_);
+  zoom_.emplace(times_of(fovs_),
+                map(fovs_, [](const Fov& fov) { return std::log(std::tan(half_fov_rad(fov.fov_deg))); }));
+}
+
+std::optional<double> Path::fov_deg(double time_s) const {
+  if (fovs_.empty()) return std::nullopt;
+  const std::size_t i = knot_at_or_after(fovs_, time_s);
+  const double at_deg = fovs_[i].fov_deg;
+  if (fovs_[i].time_s == time_s || fovs_[i - 1].fov_deg == at_deg) return at_deg;
+  const auto [least, most] = std::minmax(fovs_[i - 1].fov_deg, at_deg);
+  return std::clamp(2.0 * std::atan(std::exp(zoom_->at(time_s))) / mars::kRadiansPerDegree, least, most);
+}
 
 FlightState Path::at(double time_s) const {
   const double t = time_s > 0.0 ? std::min(time_s, duration_s_) : 0.0;
@@ -182,6 +220,10 @@ FlightState Path::at(double time_s) const {
                   mars::normalize_lon_deg(head_roll_deg_.at(t))};
   }
   state.camera = mars::to_camera(state.pose, state.head, radius_m_);
+
+  if (const std::span<const ViewCommand> views = up_to(views_, t); !views.empty())
+    state.view = views.back().view;
+  state.view.fov_deg = fov_deg(t);
   return state;
 }
 

@@ -1,4 +1,4 @@
-// Playback of a flight: pose of the platform, angles of the head, and settings at any time.
+// Playback of a flight: pose of the platform, angles of the head, settings and view at any time.
 //
 //   - Position: a smooth curve on the sphere (spherical_spline.h): a great circle between two poses, continuous
 //     velocity at every pose. Altitude: monotone between poses (monotone_spline.h).
@@ -6,9 +6,13 @@
 //     nothing spins at the poles or the antimeridian, and a straight flight at constant pitch keeps its pitch.
 //   - Head: monotone in each angle between `look` lines, in the shorter direction of rotation; straight ahead
 //     when there are no such lines.
+//   - Field of view: between two `view fov=` lines the logarithm of tan(fov / 2) is monotone and smooth, so an even
+//     zoom enlarges the image by the same factor each second. The `view` line without a time is the first of
+//     them, at 0 s. Two equal ones hold it. Flights without such lines do not change it.
+//   - Other keys of `view` lines hold from their time on.
 //   - Before the first pose (or `look` line), and between the last one and the end, the state is held, as if a
 //     line with the same values stood at the start (or the end).
-//   - At the time of a pose or `look` line the state is that of the line, to the bit: a log replays exactly.
+//   - At the time of a pose, `look` or `view` line the state is that of the line, to the bit: a log replays exactly.
 //
 // Typical usage:
 //   const Path path(flight, radius_m, terrain_height_m, exaggeration);
@@ -42,6 +46,8 @@ struct FlightState {
   mars::Pose pose;  // of the platform
   mars::HeadAngles head;
   mars::CameraPose camera;  // mars::to_camera(pose, head, radius)
+  // Holds what `view` lines with a time say; the field of view has no value if none of them has one.
+  ViewState view;
 };
 
 // Plays a flight back. Immutable; any number of threads may call its const members at once.
@@ -74,6 +80,12 @@ class Path {
     double time_s = 0;
     mars::Pose pose;
   };
+  // The field of view at a time.
+  struct Fov {
+    double time_s = 0;
+    double fov_deg = 0;
+  };
+  std::optional<double> fov_deg(double time_s) const;
   std::vector<Knot> knots_of(const Flight& flight, const TerrainHeight& terrain_height_m) const;
 
   double radius_m_;
@@ -83,12 +95,15 @@ class Path {
   std::vector<Knot> knots_;         // the poses with resolved heights, and those held at both ends
   std::vector<HeadCommand> heads_;  // likewise
   std::vector<InterestCommand> interests_;
+  std::vector<ViewCommand> views_;  // each with what those before it say
+  std::vector<Fov> fovs_;           // held at both ends; empty if no view has one
   SphericalSpline<glm::dvec3> place_;
   SphericalSpline<glm::dvec4> attitude_;
   MonotoneSpline alt_m_;
   MonotoneSpline head_yaw_deg_;
   MonotoneSpline head_pitch_deg_;
   MonotoneSpline head_roll_deg_;
+  std::optional<MonotoneSpline> zoom_;  // log tan(fov / 2); set if fovs_ is not empty
 };
 
 // Describes the frame of a film whose platform is least high above the terrain as drawn.

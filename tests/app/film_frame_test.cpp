@@ -27,6 +27,20 @@ struct Inputs {
   std::string fingerprint() const { return fingerprint_of(basis, request, settings); }
 };
 
+TEST(FilmFrame, TheEyesAreInItsFingerprint) {
+  using vpe::core::StereoLayout;
+  const Inputs i;
+  const auto of = [&](const std::optional<vpe::core::StereoPair>& stereo) {
+    return fingerprint_of(i.basis, i.request, i.settings, 0, stereo);
+  };
+  EXPECT_EQ(of(std::nullopt), i.fingerprint());
+  std::set<std::string> seen{i.fingerprint()};
+  for (const auto layout : {StereoLayout::kSideBySide, StereoLayout::kOverUnder, StereoLayout::kAnaglyph}) {
+    for (const double base_m : {1.0, std::nextafter(1.0, 2.0)})
+      EXPECT_TRUE(seen.insert(of(vpe::core::StereoPair{layout, base_m})).second);
+  }
+}
+
 TEST(FilmFrame, EverythingThatAnImageDependsOnIsInItsFingerprint) {
   const std::string base = Inputs{}.fingerprint();
   EXPECT_EQ(base.size(), 32U);

@@ -55,6 +55,8 @@ void run_flight(std::span<const std::uint8_t> bytes) {
   const scripts::ParsedFlight again = scripts::parse_flight(scripts::to_text(*parsed.flight), "again.flight");
   require(again.flight.has_value() && *again.flight == *parsed.flight, "a flight survives being written");
   require(scripts::duration_s(*parsed.flight) >= 0, "no negative duration");
+  require(parsed.flight->views.empty() || scripts::version_of(*parsed.flight) == scripts::FlightVersion::k1_1,
+          "views need version 1.1");
 }
 
 std::vector<Bytes> flight_seeds() {
@@ -62,6 +64,9 @@ std::vector<Bytes> flight_seeds() {
       bytes_of("flight 1\nview fov=60 size=64x48 fps=30000/1001\nat 0 pose lon=1 lat=2 alt=3e5 "
                "yaw=4 pitch=-5 roll=6\nat 1:02.5 set mode=lit sun.azimuth=10\nat 2 look yaw=1 "
                "pitch=2\nat 3 interest lon=1 lat=2 radius=1000 levels=2\nat 90 end\n"),
+      bytes_of(
+          "flight 1.1\nview fov=60\nat 0 pose lon=1 lat=2 alt=3e5\nat 0 view fov=30 backend=ray eyes=sbs "
+          "base=2.5 size=640x360\nat 2 view eyes=off backend=auto\nat 3 view fov=40 eyes=anaglyph base=0\n"),
       bytes_of("# nothing\nflight 1\n")};
   const fs::path folder = fs::path(VPE_SOURCE_DIR) / "scripts" / "flights";
   for (const auto& entry : fs::directory_iterator(folder)) all.push_back(read(entry.path()));

@@ -101,10 +101,12 @@ TEST(Flight, EndsWithTheLastTimeGiven) {
 }
 
 TEST(Flight, FirstLineIsTheVersion) {
-  expect_error("", 1, "\"flight 1\", found an empty file");
+  expect_error("", 1, "\"flight 1\" or \"flight 1.1\", found an empty file");
   expect_error("\n# nothing\n", 2, "found an empty file");
   expect_error("at 0 end\n", 1, "\"flight 1\"");
-  expect_error("\nflight 2\n", 2, "reads version 1 only");
+  expect_error("\nflight 2\n", 2, "reads versions 1 and 1.1), found version 2");
+  expect_error("flight 1.2\n", 1, "found version 1.2");
+  expect_error("flight 1.10\n", 1, "found version 1.10");
   expect_error("flight 1 2\n", 1, "\"flight 1\"");
   expect_error("flight one\n", 1, "\"flight 1\"");
   expect_error(std::string("\x7f"
@@ -209,6 +211,65 @@ TEST(Flight, BadSettingsHeadsAndInterestsAreRefused) {
   expect_error(with_lines("at 1 interest lon=1 lat=1 radius=-1 levels=1\n"), 3, "radius=NUMBER");
 }
 
+// Returns a flight of version 1.1 with one pose on line 2, then these lines.
+std::string in_1_1(const std::string& lines) {
+  return std::string("flight 1.1\nat 0 pose lon=0 lat=0 alt=1\n").append(lines);
+}
+
+TEST(Flight, ReadsViewsWithATime) {
+  const ParsedFlight parsed =
+      parse_flight(in_1_1("at 1 view fov=30 backend=ray eyes=sbs base=2.5 size=640x360\n"
+                          "at 1 set mode=lit\n"
+                          "at 2 view eyes=off\n"
+                          "at 3 view backend=auto base=0\n"
+                          "at 4 view backend=voxel\n"),
+                   "F");
+  ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  using vpe::core::DrawnBy;
+  const std::vector<ViewCommand> wanted{
+      {1, {30, ImageSize{640, 360}, DrawnBy::kRay, Eyes{vpe::core::StereoLayout::kSideBySide}, 2.5}},
+      {2, {{}, {}, {}, Eyes{}, {}}},
+      {3, {{}, {}, DrawnBy::kAuto, {}, 0}},
+      {4, {{}, {}, DrawnBy::kRay, {}, {}}}};
+  EXPECT_EQ(parsed.flight->views, wanted);
+  EXPECT_EQ(duration_s(*parsed.flight), 4);
+  EXPECT_EQ(version_of(*parsed.flight), FlightVersion::k1_1);
+  EXPECT_EQ(to_text(*parsed.flight).substr(0, 11), "flight 1.1\n");
+  EXPECT_EQ(to_line(wanted[0]), "at 1 view fov=30 size=640x360 backend=ray eyes=sbs base=2.5\n");
+}
+
+// What does not use a newer version is written as it was before there was one.
+TEST(Flight, IsWrittenInTheOldestVersionThatHoldsIt) {
+  const std::string old =
+      "flight 1\nview fov=60 size=1280x720 fps=30\nat 0 pose lon=0 lat=0 alt=1 yaw=0 pitch=0 roll=0\n";
+  for (const char* version : {"flight 1\n", "flight 1.1\n"}) {
+    const ParsedFlight parsed = parse_flight(version + old.substr(9), "F");
+    ASSERT_TRUE(parsed.flight.has_value());
+    EXPECT_EQ(to_text(*parsed.flight), old);
+  }
+}
+
+TEST(Flight, BadViewsWithATimeAreRefused) {
+  expect_error(with_lines("at 1 view fov=30\n"), 3, "\"flight 1.1\" as the first command");
+  expect_error(in_1_1("at 1 jump\n"), 3, "pose, look, set, interest, view or end after the time");
+  expect_error(in_1_1("at 1 view\n"), 3, "at least one of fov, base, size, backend, eyes");
+  expect_error(in_1_1("at 1 view fov=0\n"), 3, "fov=NUMBER from 0.001 to 179, found \"0\"");
+  expect_error(in_1_1("at 1 view fov=180\n"), 3, "fov=NUMBER");
+  expect_error(in_1_1("at 1 view base=-1\n"), 3, "base=NUMBER from 0 to 1000000000");
+  expect_error(in_1_1("at 1 view base=nan\n"), 3, "base=NUMBER");
+  expect_error(in_1_1("at 1 view size=0x1\n"), 3, "size=WIDTHxHEIGHT");
+  expect_error(in_1_1("at 1 view backend=opengl\n"), 3, "backend=polygon, backend=ray or backend=auto");
+  expect_error(in_1_1("at 1 view eyes=2\n"), 3, "eyes=off, eyes=sbs, eyes=ou or eyes=anaglyph, found \"2\"");
+  expect_error(in_1_1("at 1 view eyes=\n"), 3, "eyes=off");
+  expect_error(in_1_1("at 1 view eyes=off eyes=off\n"), 3, "eyes once");
+  expect_error(in_1_1("at 1 view fov=1 fov=1\n"), 3, "fov once");
+  expect_error(in_1_1("at 1 view zoom=1\n"), 3, "keys fov, base, size, backend, eyes, found \"zoom=1\"");
+  expect_error(in_1_1("at 1 view fps=30\n"), 3, "keys fov, base");
+  expect_error(in_1_1("at 1 view fov=30\nat 1 view eyes=off\n"), 4, "one view at 1 s");
+  expect_error(in_1_1("at 1 end\nat 2 view fov=30\n"), 4, "nothing after \"end\"");
+  expect_error(in_1_1("view fov=30\n"), 3, "before the first \"at\"");
+}
+
 TEST(Flight, QuotesHoldValuesWithBlanks) {
   if (!vpe::core::overlays_refused().empty()) GTEST_SKIP() << vpe::core::overlays_refused();
   const auto text_of = [](const std::string& line) {
@@ -282,6 +343,26 @@ SetCommand random_set(Random& random, double time_s) {
   return {time_s, std::string(info.key), info.default_text};
 }
 
+// Returns a view with at least one member.
+ViewState random_view(Random& random) {
+  ViewState view;
+  const int members = random.integer(1, 31);
+  const auto has = [members](int n) { return (members >> n & 1) == 1; };
+  if (has(0)) view.fov_deg = random.log_uniform(0.001, 179);
+  if (has(1)) {
+    const int width = random.integer(1, 32768);
+    view.size = ImageSize{width, random.integer(1, 32768)};
+  }
+  if (has(2)) view.backend = static_cast<vpe::core::DrawnBy>(random.integer(0, 2));
+  if (has(3)) {
+    const int eyes = random.integer(0, 3);
+    view.eyes = Eyes{};
+    if (eyes < 3) view.eyes->layout = static_cast<vpe::core::StereoLayout>(eyes);
+  }
+  if (has(4)) view.eye_base_m = random.integer(0, 3) == 0 ? 0 : random.log_uniform(1e-9, 1e9);
+  return view;
+}
+
 Flight random_flight(Random& random) {
   Flight flight;
   flight.view.fov_deg = random.uniform(1, 170);
@@ -308,6 +389,7 @@ Flight random_flight(Random& random) {
                                   {random.uniform(-360, 360), random.uniform(-90, 90), random.uniform(0, 1e6),
                                    random.integer(-30, 30)}});
     }
+    if (random.integer(0, 3) == 0) flight.views.push_back({t, random_view(random)});
     t += random.log_uniform(1e-9, 100);
   }
   if (random.integer(0, 1) == 0) flight.end_s = t;

@@ -100,6 +100,62 @@ TEST(FlightLog, HeadStaysStillUntilItMoves) {
   for (int k = 40; k <= 60; ++k) EXPECT_EQ(replay.at(k / 10.0).head.yaw_deg, 30);
 }
 
+// Views replay to the bit at the frames, and stand still until they change.
+TEST(FlightLog, ViewsReplayToTheBit) {
+  using vpe::core::DrawnBy;
+  Random random(31);
+  const TempDir folder;
+  struct Seen {
+    double time_s;
+    ViewState view;
+  };
+  std::vector<Seen> seen;
+  {
+    FlightLog log(folder / "log.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_1);
+    double t = 2.5;
+    ViewState view{50, ImageSize{64, 48}, DrawnBy::kRay, Eyes{}, {}};
+    for (int k = 0; k < 300; ++k) {
+      if (random.integer(0, 3) == 0) view.fov_deg = random.log_uniform(1, 140);
+      if (random.integer(0, 9) == 0) view.size = ImageSize{k + 1, 48};
+      if (random.integer(0, 9) == 0) view.backend = static_cast<DrawnBy>(random.integer(0, 2));
+      if (random.integer(0, 9) == 0) {
+        view.eyes = Eyes{static_cast<vpe::core::StereoLayout>(random.integer(0, 2))};
+        view.eye_base_m = random.uniform(0, 100);
+      }
+      log.frame(t, {}, {}, {}, {}, view);
+      seen.push_back({t, view});
+      t += random.log_uniform(1e-4, 1);
+      ASSERT_TRUE(parse_flight(read_file(folder / "log.flight"), "").flight.has_value());
+    }
+    log.end(t);
+  }
+  const Flight flight = *parse_flight(read_file(folder / "log.flight"), "").flight;
+  const Path replay(flight, mars::kMarsRadius_m, {});
+  EXPECT_EQ(replay.at(0).view, seen.front().view);
+  int zooms = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    ASSERT_EQ(replay.at(seen[k].time_s).view, seen[k].view) << k;
+    if (k == 0) continue;
+    const double between_s = 0.5 * (seen[k - 1].time_s + seen[k].time_s);
+    if (seen[k].view.fov_deg == seen[k - 1].view.fov_deg) {
+      ASSERT_EQ(replay.at(between_s).view.fov_deg, seen[k].view.fov_deg);
+    } else {
+      ++zooms;
+    }
+  }
+  EXPECT_GT(zooms, 20);
+}
+
+TEST(FlightLog, OfVersion1HasNoViews) {
+  const TempDir folder;
+  FlightLog log(folder / "log.flight", {});
+  ViewState view;
+  view.fov_deg = 30;
+  EXPECT_THROW(log.frame(0, {}, {}, {}, {}, view), std::logic_error);
+  log.frame(0, {}, {}, {});
+  EXPECT_TRUE(read_file(folder / "log.flight").starts_with("flight 1\n# log of vpe\n"));
+}
+
 TEST(FlightLog, IsAValidFlightAtAnyMoment) {
   const TempDir folder;
   FlightLog log(folder / "log.flight", {});

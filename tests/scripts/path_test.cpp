@@ -348,6 +348,93 @@ TEST(Path, SettingsHoldFromTheirTimeOn) {
   EXPECT_EQ(path.interests(3)[0].region.levels, -4);
 }
 
+Flight with_views(const std::string& views) {
+  const ParsedFlight parsed = parse_flight(
+      "flight 1.1\nview fov=60 size=64x48\n"
+      "at 0 pose lon=0 lat=0 alt=1000\n" +
+          views + "at 20 end\n",
+      "F");
+  EXPECT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  return *parsed.flight;
+}
+
+TEST(Path, ViewsHoldFromTheirTimeOn) {
+  using vpe::core::DrawnBy;
+  using vpe::core::StereoLayout;
+  const Path path(with_views("at 3 view backend=ray\nat 5 view eyes=ou base=4\nat 7 view eyes=off size=8x6\n"),
+                  mars::kMarsRadius_m, {});
+  EXPECT_EQ(path.at(0).view, ViewState());
+  EXPECT_EQ(path.at(std::nextafter(3, 0)).view, ViewState());
+  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}}));
+  EXPECT_EQ(path.at(5).view, (ViewState{{}, {}, DrawnBy::kRay, Eyes{StereoLayout::kOverUnder}, 4}));
+  const ViewState last{{}, ImageSize{8, 6}, DrawnBy::kRay, Eyes{}, 4};
+  EXPECT_EQ(path.at(7).view, last);
+  EXPECT_EQ(path.at(99).view, last);
+  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}}));  // also backwards
+}
+
+TEST(Path, TheFieldOfViewZoomsEvenlyBetweenItsLinesAndIsHeldOutside) {
+  const Path path(with_views("at 10 view fov=60\nat 12 view fov=2\nat 14 view backend=ray\nat 16 view fov=2\n"),
+                  mars::kMarsRadius_m, {});
+  const auto fov = [&](double time_s) { return path.at(time_s).view.fov_deg.value(); };
+  for (const double t : {0.0, 3.7, 10.0}) EXPECT_EQ(fov(t), 60);
+  for (const double t : {12.0, 12.1, 14.0, 16.0, 19.0, 20.0, 30.0}) EXPECT_EQ(fov(t), 2);
+  double before = 60;
+  for (double t = 10.01; t < 12; t += 0.01) {
+    EXPECT_LT(fov(t), before) << t;
+    EXPECT_GE(fov(t), 2);
+    before = fov(t);
+  }
+  const auto scale = [](double fov_deg) { return std::tan(fov_deg * mars::kRadiansPerDegree / 2); };
+  EXPECT_NEAR(scale(fov(11)), std::sqrt(scale(60) * scale(2)), 1e-12);
+}
+
+// The view line without a time is where a zoom begins.
+TEST(Path, AZoomBeginsWithTheFieldOfViewOfTheFlight) {
+  const Path path(with_views("at 10 view fov=30\n"), mars::kMarsRadius_m, {});
+  EXPECT_EQ(path.at(0).view.fov_deg, 60);
+  EXPECT_LT(path.at(5).view.fov_deg, 59);
+  EXPECT_GT(path.at(5).view.fov_deg, 31);
+  EXPECT_EQ(path.at(10).view.fov_deg, 30);
+  const Path own(with_views("at 0 view fov=20\n"), mars::kMarsRadius_m, {});
+  for (const double t : {0.0, 4.0, 20.0}) EXPECT_EQ(own.at(t).view.fov_deg, 20);
+}
+
+TEST(PathProperty, FieldsOfViewAreThoseOfTheirLinesToTheBitAndNeverBeyond) {
+  Random random(23);
+  for (int n = 0; n < 300; ++n) {
+    Flight flight;
+    flight.waypoints.emplace_back();
+    flight.view.fov_deg = random.log_uniform(0.001, 179);
+    double t = random.integer(0, 1) == 0 ? 0 : random.uniform(0, 3);
+    for (int k = random.integer(1, 12); k > 0; --k) {
+      ViewCommand command{t, {}};
+      if (random.integer(0, 4) == 0)
+        command.view.eye_base_m = 1;
+      else
+        command.view.fov_deg = random.log_uniform(0.001, 179);
+      flight.views.push_back(command);
+      t += random.log_uniform(1e-6, 10);
+    }
+    const Path path(flight, mars::kMarsRadius_m, {});
+    double from_s = 0;
+    double from_deg = flight.view.fov_deg;
+    for (const ViewCommand& command : flight.views) {
+      if (!command.view.fov_deg) continue;
+      const double to_deg = *command.view.fov_deg;
+      ASSERT_EQ(path.at(command.time_s).view.fov_deg, to_deg);
+      for (int k = 0; k < 20; ++k) {
+        const double at_s = random.uniform(from_s, command.time_s);
+        const double deg = *path.at(at_s).view.fov_deg;
+        ASSERT_GE(deg, std::min(from_deg, to_deg));
+        ASSERT_LE(deg, std::max(from_deg, to_deg));
+      }
+      from_s = command.time_s;
+      from_deg = to_deg;
+    }
+  }
+}
+
 TEST(Path, HeightsAreAboveTheTerrain) {
   const Flight flight = flight_of("at 0 pose lon=10 lat=20 height=300\nat 1 pose lon=11 lat=20 alt=300\n");
   const Path path(flight, kRadius_m, [](mars::LonLat p, double) { return p.lon_deg * 100 + p.lat_deg; });

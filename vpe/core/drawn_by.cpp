@@ -16,6 +16,11 @@ DrawnBy drawn_by(std::optional<Backend> named) {
   return *named == Backend::kRay ? DrawnBy::kRay : DrawnBy::kPolygon;
 }
 
+std::optional<Backend> named_backend(DrawnBy drawn_by) {
+  if (drawn_by == DrawnBy::kAuto) return std::nullopt;
+  return drawn_by == DrawnBy::kRay ? Backend::kRay : Backend::kPolygon;
+}
+
 Backend backend_for(DrawnBy drawn_by, const BackendInput& input) {
   constexpr double kKept = 0.1;
   if (drawn_by == DrawnBy::kPolygon) return Backend::kPolygon;

@@ -17,6 +17,9 @@ std::string_view to_string(DrawnBy drawn_by);
 // Returns the choice of a backend that was named; kAuto if none was.
 DrawnBy drawn_by(std::optional<Backend> named);
 
+// Returns the backend that a choice names; nullopt for kAuto.
+std::optional<Backend> named_backend(DrawnBy drawn_by);
+
 // Describes what the choice depends on.
 struct BackendInput {
   bool has_gpu = false;     // triangles are drawn by one

@@ -95,4 +95,6 @@ std::optional<double> comfortable_base_m(std::span<const float> range_m) {
   return nearest_m / kNearestToBase;
 }
 
+double base_for_height_m(double height_m) { return std::max(height_m, 1.0) / kNearestToBase; }
+
 }  // namespace vpe::core

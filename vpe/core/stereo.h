@@ -22,6 +22,12 @@ enum class StereoLayout : std::uint8_t {
   kAnaglyph,    // for red glass before the left eye, cyan before the right
 };
 
+// Describes the two eyes of an image.
+struct StereoPair {
+  StereoLayout layout = StereoLayout::kSideBySide;
+  double eye_base_m = 0;  // > 0
+};
+
 // Returns the layout named "sbs", "ou" or "anaglyph", or nullopt for other words.
 std::optional<StereoLayout> parse_stereo(std::string_view name);
 const char* to_string(StereoLayout layout);
@@ -45,5 +51,8 @@ inline constexpr double kNearestToBase = 30.0;
 
 // Returns the base for a range image: its smallest finite range / kNearestToBase, or nullopt if it is all sky.
 std::optional<double> comfortable_base_m(std::span<const float> range_m);
+
+// Returns the base for a camera this high above the ground, at least 1 m, when the ground below is the nearest.
+double base_for_height_m(double height_m);
 
 }  // namespace vpe::core

@@ -135,10 +135,8 @@ void FilmMaker::run(FilmReports& reports, ProgressLine& line) {
 }
 
 void FilmMaker::make_group(std::size_t begin, std::size_t end) {
-  if (!renderer_) {
-    target_.prepare();
-    renderer_ = make_renderer_();
-  }
+  if (!is_prepared_) target_.prepare();
+  is_prepared_ = true;
   const std::int64_t group = (first_ + static_cast<std::int64_t>(begin)) / target_.group_size();
   bool whole = true;
   for (std::size_t n = begin; n < end; ++n) {
@@ -158,27 +156,64 @@ void FilmMaker::make_group(std::size_t begin, std::size_t end) {
   }
 }
 
+core::Renderer& FilmMaker::renderer_for(core::Backend backend) {
+  if (renderer_ && backend_ == backend) return *renderer_;
+  renderer_.reset();
+  renderer_ = make_renderer_(backend);
+  backend_ = backend;
+  return *renderer_;
+}
+
+core::DrawResult FilmMaker::draw_whole(const core::DrawRequest& request, core::Renderer& renderer) {
+  core::DrawResult result = renderer.draw(request);
+  reports_->failures.insert(reports_->failures.end(), result.failures.begin(), result.failures.end());
+  require_complete(options_, result);
+  return result;
+}
+
+std::vector<FilmMaker::DrawnEye> FilmMaker::draw_eyes(std::size_t n, const PlannedFrame& planned,
+                                                      core::Renderer& renderer) {
+  core::PagingRequest paging = planned.request.paging;
+  paging.timeout_s = options_.wait_s;
+  if (n + 1 < frames_.size() && !frames_[n + 1].is_done()) {
+    const PlannedFrame next = plan_.at(frames_[n + 1].index);
+    if (next.backend == planned.backend) paging.upcoming = {next.request.view};
+    // The renderer may begin the next request at once; between both eyes that is another one.
+    if (next.backend == planned.backend && !next.stereo && !planned.stereo)
+      paging.next = std::make_shared<const core::DrawRequest>(next.request);
+  }
+  std::vector<DrawnEye> eyes;
+  for (core::DrawRequest& request : planned.requests()) {
+    request.paging = paging;
+    DrawnEye eye{request, draw_whole(request, renderer), {}};
+    if (const auto finer = contour_request(request, eye.result)) eye.contours = draw_whole(*finer, renderer);
+    eyes.push_back(std::move(eye));
+  }
+  return eyes;
+}
+
+core::Frame FilmMaker::finish(std::vector<DrawnEye>& eyes, const std::optional<core::StereoPair>& stereo,
+                              double time_s) {
+  std::vector<core::RgbImage> images;
+  for (DrawnEye& eye : eyes) {
+    core::Frame& frame = eye.result.frame;
+    const FrameGround ground{frame.range_m, eye.result.certificate, std::move(eye.contours)};
+    overlay::composite(overlays_.layer(eye.request, ground, time_s), frame.colour);
+    images.push_back({frame.width, frame.height, std::move(frame.colour)});
+  }
+  core::RgbImage image =
+      stereo ? core::combine_stereo(images.front(), images.back(), stereo->layout) : std::move(images.front());
+  return {image.width, image.height, std::move(image.pixels), {}};
+}
+
 bool FilmMaker::draw(std::size_t n) {
   FilmFrame& frame = frames_[n];
   const PlannedFrame planned = plan_.at(frame.index);
   log(frame, planned);
-  core::DrawResult result;
-  std::optional<core::DrawResult> contours;
-  core::DrawRequest request = planned.request;
-  request.paging.timeout_s = options_.wait_s;
-  if (n + 1 < frames_.size() && !frames_[n + 1].is_done()) {
-    request.paging.next = std::make_shared<const core::DrawRequest>(plan_.at(frames_[n + 1].index).request);
-    request.paging.upcoming = {request.paging.next->view};
-  }
+  core::Renderer& renderer = renderer_for(planned.backend);
+  const auto eyes = std::make_shared<std::vector<DrawnEye>>();
   try {
-    result = renderer_->draw(request);
-    reports_->failures.insert(reports_->failures.end(), result.failures.begin(), result.failures.end());
-    require_complete(options_, result);
-    if (const auto finer = contour_request(request, result)) {
-      contours = renderer_->draw(*finer);
-      reports_->failures.insert(reports_->failures.end(), contours->failures.begin(), contours->failures.end());
-      require_complete(options_, *contours);
-    }
+    *eyes = draw_eyes(n, planned, renderer);
   } catch (const std::bad_alloc&) {
     throw;  // the next frame would not fit either
   } catch (const std::exception& e) {
@@ -186,17 +221,20 @@ bool FilmMaker::draw(std::size_t n) {
     frame.error = e.what();
     return false;
   }
-  if (reports_->stats) reports_->stats->row(frame.index, frame.time_s, result.stats, result.certificate);
-  frame.figures = {result.stats, result.certificate};
+  // Of two eyes, the figures are those of the one with the larger bound.
+  const DrawnEye& worst = *std::ranges::max_element(
+      *eyes, {}, [](const DrawnEye& eye) { return eye.result.certificate.shift_bound_px; });
+  frame.figures = {worst.result.stats, worst.result.certificate};
+  if (reports_->stats)
+    reports_->stats->row(frame.index, frame.time_s, frame.figures.stats, frame.figures.certificate);
   // The next run makes it again.
-  if (!result.missing.empty() || (contours && !contours->missing.empty())) frame.fingerprint += kIncomplete;
-  const auto image = std::make_shared<core::Frame>(std::move(result.frame));
-  const auto ground = std::make_shared<FrameGround>(
-      FrameGround{image->range_m, frame.figures.certificate, std::move(contours)});
+  const bool is_whole = std::ranges::all_of(*eyes, [](const DrawnEye& eye) {
+    return eye.result.missing.empty() && !(eye.contours && !eye.contours->missing.empty());
+  });
+  if (!is_whole) frame.fingerprint += kIncomplete;
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
-  sink_->push([this, group, &frame, image, ground, request = planned.request] {
-    overlay::composite(overlays_.layer(request, *ground, frame.time_s), image->colour);
-    target_.add(group, frame, *image);
+  sink_->push([this, group, &frame, eyes, stereo = planned.stereo] {
+    target_.add(group, frame, finish(*eyes, stereo, frame.time_s));
   });
   return true;
 }
@@ -211,7 +249,7 @@ void FilmMaker::report_kept(const FilmFrame& frame) {
 void FilmMaker::log(const FilmFrame& frame, const PlannedFrame& planned) {
   if (reports_->log)
     reports_->log->frame(frame.time_s, planned.state.pose, planned.state.head, planned.settings,
-                         planned.request.interest);
+                         planned.request.interest, planned.drawn_view());
 }
 
 void FilmMaker::show(std::size_t done) {

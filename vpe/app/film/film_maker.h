@@ -33,9 +33,10 @@ class FrameSink;
 //   FilmMaker(plan, target, frames, first, options, make_renderer, overlays).run(reports, line);
 class FilmMaker {
  public:
-  using MakeRenderer = std::function<std::unique_ptr<core::Renderer>()>;
+  using MakeRenderer = std::function<std::unique_ptr<core::Renderer>(core::Backend)>;
 
-  // `first` is the number of frames[0] in the film. The renderer is made when the first frame has to be drawn.
+  // `first` is the number of frames[0] in the film. A renderer is made when a frame has to be drawn by it. There is
+  // one at a time, so that --memory holds also where a flight changes the backend.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
             const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
 
@@ -46,6 +47,15 @@ class FilmMaker {
   void run(FilmReports& reports, ProgressLine& line);
 
  private:
+  struct DrawnEye {
+    core::DrawRequest request;
+    core::DrawResult result;
+    std::optional<core::DrawResult> contours;
+  };
+  core::Renderer& renderer_for(core::Backend backend);
+  std::vector<DrawnEye> draw_eyes(std::size_t n, const PlannedFrame& planned, core::Renderer& renderer);
+  core::DrawResult draw_whole(const core::DrawRequest& request, core::Renderer& renderer);
+  core::Frame finish(std::vector<DrawnEye>& eyes, const std::optional<core::StereoPair>& stereo, double time_s);
   void make_group(std::size_t begin, std::size_t end);
   bool draw(std::size_t n);
   void report_kept(const FilmFrame& frame);
@@ -60,7 +70,9 @@ class FilmMaker {
   MakeRenderer make_renderer_;
   FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;
-  FilmReports* reports_ = nullptr;  // during run()
+  core::Backend backend_ = core::Backend::kPolygon;  // of renderer_
+  bool is_prepared_ = false;                         // the target
+  FilmReports* reports_ = nullptr;                   // during run()
   ProgressLine* line_ = nullptr;
   FrameSink* sink_ = nullptr;
 };

@@ -1,6 +1,7 @@
 #include "vpe/app/film/film_plan.h"
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -50,29 +51,65 @@ FrameRange parse_frames(const std::string& text, std::int64_t count) {
 }
 
 FilmPlan::FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
-                   std::vector<core::InterestRegion> interest)
+                   std::vector<core::InterestRegion> interest, ViewOptions views)
     : basis_(std::move(basis)),
       view_(view),
       path_(std::move(path)),
       base_(std::move(base)),
       interest_(std::move(interest)),
+      views_(std::move(views)),
       start_(path_.at(0.0).pose) {}
+
+std::vector<core::DrawRequest> PlannedFrame::requests() const {
+  if (!stereo) return {request};
+  std::vector<core::DrawRequest> eyes{request, request};
+  eyes[0].view = core::eye_view(request.view, -0.5 * stereo->eye_base_m, std::nullopt);
+  eyes[1].view = core::eye_view(request.view, 0.5 * stereo->eye_base_m, std::nullopt);
+  return eyes;
+}
+
+scripts::ViewState PlannedFrame::drawn_view() const {
+  scripts::ViewState view = state.view;
+  view.size.reset();
+  if (view.backend) view.backend = core::drawn_by(backend);
+  if (stereo) view.eye_base_m = stereo->eye_base_m;
+  return view;
+}
+
+std::optional<core::StereoPair> FilmPlan::stereo_of(const scripts::FlightState& state, double time_s) const {
+  const scripts::ViewState& view = state.view;
+  if (!view.eyes || !view.eyes->layout) return std::nullopt;
+  double base_m = view.eye_base_m.value_or(0);
+  if (!(base_m > 0)) {
+    const mars::LonLat place{state.pose.lon_deg, state.pose.lat_deg};
+    const double ground_m =
+        views_.terrain_height_m ? views_.terrain_height_m(place, path_.exaggeration(time_s)) : 0;
+    base_m = core::base_for_height_m(state.pose.alt_m - (std::isfinite(ground_m) ? ground_m : 0));
+  }
+  return core::StereoPair{*view.eyes->layout, base_m};
+}
 
 PlannedFrame FilmPlan::at(std::int64_t frame) const {
   PlannedFrame out;
   out.time_s = scripts::frame_time(view_.fps, frame);
-  out.settings = base_;
+  out.state = path_.at(out.time_s);
+  const scripts::ViewState& view = out.state.view;
+  const auto named = views_.named && view.backend ? core::named_backend(*view.backend) : std::nullopt;
+  out.names_backend = named.has_value();
+  out.backend = named.value_or(basis_.backend);
+  out.stereo = stereo_of(out.state, out.time_s);
+  out.settings = named ? *views_.named : base_;
   path_.apply_settings(out.time_s, out.settings);
   for (const FilmPalette& palette : palettes_) {
     const core::SettingsValues& values = out.settings.values();
     if (core::has_auto_ends(values) && values.colour == palette.colour) take_ends(out.settings, palette.ends);
   }
-  out.state = path_.at(out.time_s);
   core::DrawRequest& request = out.request;
   request.view.camera = out.state.camera;
-  request.view.width = view_.width;
-  request.view.height = view_.height;
-  request.view.fov_deg = view_.fov_deg;
+  const auto has = [&](core::StereoLayout layout) { return out.stereo && out.stereo->layout == layout; };
+  request.view.width = has(core::StereoLayout::kSideBySide) ? view_.width / 2 : view_.width;
+  request.view.height = has(core::StereoLayout::kOverUnder) ? view_.height / 2 : view_.height;
+  request.view.fov_deg = view.fov_deg.value_or(view_.fov_deg);
   request.settings = out.settings.values();
   request.interest = interest_;
   for (const scripts::InterestCommand& command : path_.interests(out.time_s)) {
@@ -92,7 +129,10 @@ std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t be
     FilmFrame frame;
     frame.index = range.frame(n);
     frame.time_s = planned.time_s;
-    frame.fingerprint = fingerprint_of(basis_, planned.request, planned.settings, planned.time_s);
+    RenderBasis basis = basis_;
+    basis.backend = planned.backend;
+    frame.fingerprint =
+        fingerprint_of(basis, planned.request, planned.settings, planned.time_s, planned.stereo);
     out.push_back(std::move(frame));
   }
   return out;

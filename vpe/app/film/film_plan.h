@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "vpe/app/film/film_frame.h"
 #include "vpe/app/picture/fingerprint.h"
 #include "vpe/core/appearance/palette.h"
+#include "vpe/core/stereo.h"
 
 namespace vpe::app {
 
@@ -38,7 +40,24 @@ struct PlannedFrame {
   double time_s = 0;
   scripts::FlightState state;
   core::Settings settings;
-  core::DrawRequest request;
+  core::DrawRequest
+      request;  // in stereo that of the middle between both eyes, with the size of one eye's image
+  core::Backend backend = core::Backend::kPolygon;
+  bool names_backend = false;  // the flight names it
+  std::optional<core::StereoPair> stereo;
+
+  // Returns the requests to draw: one, or those of the left and the right eye.
+  std::vector<core::DrawRequest> requests() const;
+  // Returns the view as a log records it: what the flight says, with the backend and the eye base that were used.
+  scripts::ViewState drawn_view() const;
+};
+
+// Says how a plan follows the views of its flight.
+struct ViewOptions {
+  // Settings of the frames whose backend the flight names; nullopt: RenderBasis::backend draws all frames.
+  std::optional<core::Settings> named;
+  // For eyes whose distance follows the height above the ground. Empty, or unknown terrain: above the sphere.
+  scripts::TerrainHeight terrain_height_m;
 };
 
 // The ends of the palette where a film shows a value and takes them from its views (film_palette.h).
@@ -47,7 +66,8 @@ struct FilmPalette {
   core::PaletteEnds ends = {};
 };
 
-// Turns times of a flight into draw requests. Any thread may call every const member at any time.
+// Turns times of a flight into draw requests. A film has one size. Eyes side by side have half its width each, eyes
+// over and under half its height each; the vertical field of view stays. Any thread may call every const member at any time.
 //
 // Typical usage:
 //   const FilmPlan plan(basis, flight.view, scripts::Path(flight, radius_m, terrain, exaggeration), settings);
@@ -55,10 +75,10 @@ struct FilmPalette {
 //   const core::DrawResult result = renderer.draw(planned.request);
 class FilmPlan {
  public:
-  // `base` holds the settings before the flight's own. `interest` holds regions that count from the start on,
-  // beside the flight's own.
+  // `base` holds the settings before the flight's own, in frames whose backend the flight does not name. `interest`
+  // holds regions that count from the start on, beside the flight's own.
   FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
-           std::vector<core::InterestRegion> interest = {});
+           std::vector<core::InterestRegion> interest = {}, ViewOptions views = {});
 
   const scripts::Path& path() const { return path_; }
   const scripts::FlightView& view() const { return view_; }
@@ -74,11 +94,14 @@ class FilmPlan {
   std::vector<FilmFrame> frames(const FrameRange& range, std::int64_t begin, std::int64_t end) const;
 
  private:
+  std::optional<core::StereoPair> stereo_of(const scripts::FlightState& state, double time_s) const;
+
   RenderBasis basis_;
   scripts::FlightView view_;
   scripts::Path path_;
   core::Settings base_;
   std::vector<core::InterestRegion> interest_;
+  ViewOptions views_;
   mars::Pose start_;
   std::vector<FilmPalette> palettes_;
 };

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "mars/geodesy/place_text.h"
 #include "mars/sources/synthetic.h"
@@ -54,6 +55,23 @@ scripts::Flight flight_of(const FlyArguments& arguments) {
     flight.view.height = size.height;
   }
   return flight;
+}
+
+// Throws std::runtime_error if the images of both eyes cannot have half the size of the film.
+void require_halves(const std::string& file, const scripts::Flight& flight) {
+  const auto has = [&](core::StereoLayout layout) {
+    return std::ranges::any_of(flight.views, [layout](const scripts::ViewCommand& command) {
+      return command.view.eyes && command.view.eyes->layout == layout;
+    });
+  };
+  const auto refuse = [&](const char* eyes, const char* side, int side_px) {
+    throw std::runtime_error(file + ": eyes=" + eyes + " has half the " + side + " for each eye, which " +
+                             std::to_string(side_px) + " pixels do not allow: give an even one with --size");
+  };
+  if (has(core::StereoLayout::kSideBySide) && flight.view.width % 2 != 0)
+    refuse("sbs", "width", flight.view.width);
+  if (has(core::StereoLayout::kOverUnder) && flight.view.height % 2 != 0)
+    refuse("ou", "height", flight.view.height);
 }
 
 // Returns the files that the film reads, also those that settings of the flight name.
@@ -168,13 +186,21 @@ void check_parts(const FlyArguments& arguments, const FilmSession& session, cons
   }
 }
 
+// Returns the backend that draws all frames, or "mixed".
+std::string backend_text(const FilmPlan& plan, std::span<const FilmFrame> frames, core::Backend preferred) {
+  std::set<std::string_view> names;
+  for (const FilmFrame& frame : frames) names.insert(core::to_string(plan.at(frame.index).backend));
+  if (names.empty()) return std::string(core::to_string(preferred));
+  return names.size() > 1 ? "mixed" : std::string(*names.begin());
+}
+
 void report(const FlyArguments& arguments, const Common& common, const FilmSession& session, double seconds,
-            bool illustration, const std::optional<SunStatement>& sun) {
+            bool illustration, const std::optional<SunStatement>& sun, const FilmPlan& plan) {
   const std::vector<FilmFrame>& frames = session.frames();
   if (common.json) {
     nlohmann::json json = summary_json(frames, seconds);
     json["output"] = arguments.output;
-    json["backend"] = core::to_string(*arguments.image.backend);
+    json["backend"] = backend_text(plan, frames, *arguments.image.backend);
     json["illustration"] = illustration;
     json["sun"] = to_json(sun);
     json["manifest"] =
@@ -209,8 +235,8 @@ bool film_suits_rays(const FilmPlan& plan, const scripts::Flight& flight, const 
 }
 
 // Returns the plans of the film by its possible backends, the preferred one first: the backend of --backend, or
-// the one that suits most frames, then the other. One backend draws all frames. Parts of a film may be made on
-// different machines and must be alike, so polygons are preferred there.
+// the one that suits most frames, then the other. It draws all frames whose backend the flight does not name. Parts
+// of a film may be made on different machines and must be alike, so polygons are preferred there.
 std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
                                    const scripts::Flight& flight, const core::Settings& base,
                                    const std::shared_ptr<const paging::PlanetFile>& planet,
@@ -223,7 +249,8 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
         chosen.backend,
         FilmPlan({version(), planet->meta().identity, chosen.backend, common.memory_mb}, flight.view,
                  scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
-                 chosen.settings, parse_interest(image))};
+                 chosen.settings, parse_interest(image),
+                 {image.backend ? std::nullopt : std::optional(base), terrain})};
     if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
     film.plan.take_palettes(*palettes);
     return film;
@@ -231,6 +258,9 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   if (image.backend) return {plan_of({*image.backend, base})};
   std::vector<PlannedFilm> films{plan_of({core::Backend::kPolygon, base})};
   const FilmPlan& plan = films.front().plan;
+  bool is_all_named = true;
+  for (std::int64_t k = 0; k < count && is_all_named; ++k) is_all_named = plan.at(k).names_backend;
+  if (is_all_named) return films;
   if (!film_suits_rays(plan, flight, base)) return films;
   if (const auto problem = opengl_problem()) {
     // Frames that triangles made elsewhere are found all the same.
@@ -263,6 +293,7 @@ const PlannedFilm& select_plan(FilmSession& session, const std::vector<PlannedFi
 void fly(FlyArguments& arguments, const Common& common) {
   parse_interest(arguments.image);  // throws for wrong usage before any work
   const scripts::Flight flight = flight_of(arguments);
+  require_halves(arguments.flight, flight);
   const core::Settings base = make_settings(arguments.image);
   const FilmRequest request = film_request(arguments, flight, base);
 
@@ -279,6 +310,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   check_parts(arguments, session, request.shard, common.quiet);
+  const bool is_named = arguments.image.backend.has_value();
   arguments.image.backend = film.backend;
   const core::DrawRequest first = plan.at(0).request;
   require_known_sun(first.settings, meta.body);
@@ -293,11 +325,23 @@ void fly(FlyArguments& arguments, const Common& common) {
   load_names(overlays, base, flight);
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
-  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole);
+  if (!arguments.log.empty())
+    reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole,
+                        scripts::version_of(flight));
   auto start = std::chrono::steady_clock::now();
-  const auto renderer = [&] {
-    auto made = make_renderer(arguments.image, common, planet);
-    start = std::chrono::steady_clock::now();  // the rate counts drawing and encoding only
+  bool is_begun = false;
+  const auto renderer = [&](core::Backend backend) {
+    RenderOptions options = arguments.image;
+    options.backend = backend;
+    std::unique_ptr<core::Renderer> made;
+    try {
+      made = make_renderer(options, common, planet);
+    } catch (const gl::ContextError& e) {
+      if (is_named || flight.views.empty()) throw;
+      throw std::runtime_error(std::string(e.what()) + "; --backend ray draws all frames by rays");
+    }
+    if (!is_begun) start = std::chrono::steady_clock::now();  // the rate counts drawing and encoding only
+    is_begun = true;
     return made;
   };
   session.make(plan, reports, arguments.image, renderer, overlays, common.quiet);
@@ -308,7 +352,7 @@ void fly(FlyArguments& arguments, const Common& common) {
                   fs::path(arguments.flight).filename().string(), flight.view.fps, flight.view.width,
                   flight.view.height, arguments.frames, request.shard, plan.palettes()});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(arguments, common, session, seconds, meta.illustration, sun);
+  report(arguments, common, session, seconds, meta.illustration, sun, plan);
 }
 
 }  // namespace
@@ -330,7 +374,10 @@ void add_fly(CLI::App& program, Common& common) {
       "--join", arguments->join,
       "Draw nothing: join the parts of a video, or check those of a folder; names missing frames");
   command->add_flag("--force", arguments->force, "Draw every frame again, also those of an earlier run");
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (default: the size in the flight)");
+  command->add_option(
+      "--size", arguments->size,
+      "WIDTHxHEIGHT of all frames, pixels (default: the size of the first view in the flight). With eyes=sbs or "
+      "eyes=ou in the flight, each eye has half of it; the vertical field of view stays");
   command->add_option("--log", arguments->log, "Write the flown poses as a flight");
   command->add_option("--stats", arguments->stats, "Write one row of figures per frame (.csv, .jsonl)");
   command->add_flag("--allow-underground", arguments->allow_underground,

@@ -24,7 +24,8 @@ void add(Digest& digest, const core::Palette& palette) {
 }  // namespace
 
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s) {
+                           const core::Settings& settings, double time_s,
+                           const std::optional<core::StereoPair>& stereo) {
   const core::View& view = request.view;
   Digest digest;
   digest.add(kEncoding).add(basis.program).add(basis.planet).add(core::to_string(basis.backend));
@@ -51,6 +52,7 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   const core::SettingsValues& values = settings.values();
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
+  if (stereo) digest.add("stereo").add(core::to_string(stereo->layout)).add(stereo->eye_base_m);
   return digest.hex();
 }
 

@@ -1,10 +1,12 @@
 // Fingerprints of images: digests of everything that an image depends on.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
+#include "vpe/core/stereo.h"
 
 namespace vpe::app {
 
@@ -18,8 +20,10 @@ struct RenderBasis {
 
 // Returns a digest of everything that the image depends on, so that equal fingerprints mean equal images. Files
 // that the settings name count by their content. The name of the flight and the number of the frame do not
-// count; the time counts only where the image shows it. Throws base::FileError.
+// count; the time counts only where the image shows it. With `stereo` the request is that of the middle between both
+// eyes. Throws base::FileError.
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s = 0);
+                           const core::Settings& settings, double time_s = 0,
+                           const std::optional<core::StereoPair>& stereo = std::nullopt);
 
 }  // namespace vpe::app
