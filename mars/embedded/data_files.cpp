@@ -18,6 +18,7 @@ std::vector<std::string> data_folders() {
   }
   folders.emplace_back(VPE_INSTALLED_DATA);
   folders.emplace_back(VPE_SOURCE_DATA);
+  folders.emplace_back(VPE_SOURCE_SCRIPTS);
   return folders;
 }
 

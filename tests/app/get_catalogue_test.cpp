@@ -6,6 +6,7 @@
 #include <set>
 
 #include "vpe/app/cli/program.h"
+#include "vpe/app/cli/shell_word.h"
 #include "vpe/app/get/build_line.h"
 #include "vpe/app/get/listing.h"
 #include "vpe/app/get/selection.h"

@@ -22,7 +22,7 @@ double ground_height_m(const Pose& pose, const TerrainQuery& ground) {
 }
 
 // Moves along the great circle that begins with `heading_deg`, and rotates the camera with it.
-Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
+Pose carried_by(const Pose& pose, double heading_deg, double arc_rad) {
   if (arc_rad == 0.0) return pose;
   // Transports directions, not bearings, which are undefined at a pole.
   const mars::LocalFrame frame = mars::local_frame({pose.lon_deg, pose.lat_deg});
@@ -42,6 +42,17 @@ Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
   next.lat_deg = place.lat_deg;
   next.yaw_deg = normalized(pose.yaw_deg + (heading_there_deg - heading_deg));
   return next;
+}
+
+// Rotates the camera by the controls of a frame.
+Pose aimed(const Pose& pose, const Controls& controls, double dt_s) {
+  return rotated(pose, controls.yaw_right * SteerLimits::kRotation_deg_s * dt_s,
+                 controls.pitch_up * SteerLimits::kRotation_deg_s * dt_s,
+                 controls.roll_right * SteerLimits::kRoll_deg_s * dt_s);
+}
+
+bool moves(const Controls& controls) {
+  return controls.right != 0 || controls.up != 0 || controls.forward != 0;
 }
 
 }  // namespace
@@ -66,6 +77,13 @@ Pose kept_clear(const Pose& pose, const TerrainQuery& ground, double clearance_m
   return clear;
 }
 
+Pose carried(const Pose& pose, double right_m, double forward_m, double radius_m) {
+  const double way_m = std::hypot(right_m, forward_m);
+  if (!std::isfinite(way_m)) return pose;
+  const double heading_deg = pose.yaw_deg + std::atan2(right_m, forward_m) / mars::kRadiansPerDegree;
+  return carried_by(pose, heading_deg, way_m / std::max(radius_m + pose.alt_m, 1.0));
+}
+
 Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, const TerrainQuery& ground) {
   const double ahead_m = std::hypot(right_m, forward_m);
   if (!(std::isfinite(ahead_m) && std::isfinite(up_m))) return pose;
@@ -77,7 +95,7 @@ Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, cons
   double heading_now_deg = heading_deg;
   for (int n = 0; n < steps; ++n) {
     const double arc_rad = ahead_m / steps / std::max(ground.radius_m + at.alt_m, 1.0);
-    const Pose next = carried(at, heading_now_deg, arc_rad);
+    const Pose next = carried_by(at, heading_now_deg, arc_rad);
     heading_now_deg += next.yaw_deg - at.yaw_deg;
     at = next;
     at.alt_m += up_m / steps;
@@ -98,17 +116,24 @@ Pose rotated(const Pose& pose, double yaw_deg, double pitch_deg, double roll_deg
 Pose steered(const Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground) {
   if (!any(controls) || !(dt_s > 0.0)) return pose;
   const double dt = std::min(dt_s, SteerLimits::kLongestStep_s);
-  const Pose aimed = rotated(pose, controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
-                             controls.pitch_up * SteerLimits::kRotation_deg_s * dt,
-                             controls.roll_right * SteerLimits::kRoll_deg_s * dt);
-  if (controls.right == 0 && controls.up == 0 && controls.forward == 0) return aimed;
-  const double step_m = full_speed_m_s(aimed, ground) * controls.speed * dt;
+  const Pose from = aimed(pose, controls, dt);
+  if (!moves(controls)) return from;
+  const double step_m = full_speed_m_s(from, ground) * controls.speed * dt;
   // The camera's axes in its level frame: right, up, forward.
   const mars::LocalFrame level{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};  // east, north, up
-  const mars::Axes axes = mars::oriented_axes(level, 0.0, aimed.pitch_deg, aimed.roll_deg);
+  const mars::Axes axes = mars::oriented_axes(level, 0.0, from.pitch_deg, from.roll_deg);
   const glm::dvec3 step =
       (axes.right * controls.right + axes.up * controls.up + axes.forward * controls.forward) * step_m;
-  return moved(aimed, step.x, step.y, step.z, ground);
+  return moved(from, step.x, step.y, step.z, ground);
+}
+
+Pose flown(const Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground) {
+  if (!any(controls) || !(dt_s > 0.0)) return pose;
+  const double dt = std::min(dt_s, SteerLimits::kLongestStep_s);
+  const Pose from = aimed(pose, controls, dt);
+  if (!moves(controls)) return from;
+  const double step_m = full_speed_m_s(from, ground) * controls.speed * dt;
+  return moved(from, controls.right * step_m, controls.up * step_m, controls.forward * step_m, ground);
 }
 
 }  // namespace vpe::explore

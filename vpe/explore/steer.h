@@ -32,6 +32,10 @@ double full_speed_m_s(const mars::Pose& pose, const TerrainQuery& ground);
 mars::Pose kept_clear(const mars::Pose& pose, const TerrainQuery& ground,
                       double clearance_m = SteerLimits::kClearance_m);
 
+// Moves horizontally by metres along a great circle, turning with it, at the same altitude and without regard to the
+// ground. No query of the ground.
+mars::Pose carried(const mars::Pose& pose, double right_m, double forward_m, double radius_m);
+
 // Moves by metres in the camera's level frame (right and forward are horizontal). Steps are short enough that
 // the camera passes over obstacles on the way and never through them.
 mars::Pose moved(const mars::Pose& pose, double right_m, double up_m, double forward_m,
@@ -43,5 +47,9 @@ mars::Pose rotated(const mars::Pose& pose, double yaw_deg, double pitch_deg, dou
 // Applies controls for a frame of dt_s seconds: motion is along the camera's own axes, rotation about the local
 // vertical.
 mars::Pose steered(const mars::Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground);
+
+// Applies controls for a frame of dt_s seconds: motion is along the horizon and the vertical, whatever the pitch and
+// roll, so that `forward` keeps the altitude over even ground.
+mars::Pose flown(const mars::Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground);
 
 }  // namespace vpe::explore

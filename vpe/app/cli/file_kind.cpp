@@ -89,6 +89,7 @@ const char* name_of(FileKind kind) {
     case FileKind::kHorizonList: return "a skyline of 'vpe horizon'";
     case FileKind::kStatistics: return "statistics of 'vpe fly'";
     case FileKind::kFlightLog: return "a log of vpe";
+    case FileKind::kTraverse: return "a traverse of vpe";
     case FileKind::kFrame: return "a frame of 'vpe fly'";
     case FileKind::kManifest: return "a manifest of 'vpe fly'";
     case FileKind::kVideo: return "a film of 'vpe fly' with its manifest";
@@ -113,7 +114,9 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kLandscape: return contains(head, "\nauthor = vpe\n");
     case FileKind::kHorizonList: return head.starts_with("# azimuth (clockwise from north)");
     case FileKind::kStatistics: return head.starts_with("frame,t_s,") || head.starts_with("{\"frame\":");
-    case FileKind::kFlightLog: return head.starts_with("flight 1\n# log of vpe");
+    case FileKind::kFlightLog:
+      return head.starts_with("flight 1\n# log of vpe") || head.starts_with("flight 1.1\n# log of vpe");
+    case FileKind::kTraverse: return head.starts_with("flight 1\n# traverse of vpe");
     case FileKind::kFrame: return is_png(head) && contains(head, "vpe:fingerprint");
     case FileKind::kManifest: return is_json(head) && contains(head, "\"program\": \"vpe ");
     case FileKind::kVideo: return contains(std::string_view(head).substr(0, 12), "ftyp") && is_own_video(file);

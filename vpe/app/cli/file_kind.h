@@ -19,6 +19,7 @@ enum class FileKind : std::uint8_t {
   kHorizonList,
   kStatistics,
   kFlightLog,  // with the comment that begins every log
+  kTraverse,   // flight with the comment that begins every traverse
   kFrame,      // PNG with this program's texts
   kManifest,
   kVideo,   // MP4 of this program: its manifest or its segments lie beside it

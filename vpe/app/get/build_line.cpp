@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vpe/app/cli/shell_word.h"
+
 namespace vpe::app {
 
 namespace {
@@ -44,14 +46,6 @@ std::string line_for(const std::vector<const SelectedProduct*>& products, const 
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& word) {
-  constexpr const char* kSafe = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=:,+@%";
-  if (!word.empty() && word.find_first_not_of(kSafe) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string(R"('\'')") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::vector<BuildLine> build_lines(const std::vector<SelectedProduct>& selected,
                                    const std::filesystem::path& folder) {

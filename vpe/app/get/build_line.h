@@ -23,7 +23,4 @@ struct BuildLine {
 std::vector<BuildLine> build_lines(const std::vector<SelectedProduct>& selected,
                                    const std::filesystem::path& folder);
 
-// Returns the word as a POSIX shell reads it back: in single quotes unless all characters are safe.
-std::string shell_word(const std::string& word);
-
 }  // namespace vpe::app

@@ -137,7 +137,7 @@ void add_row(const std::string& line, const Header& header, const std::string& w
 
 }  // namespace
 
-PlaceTable read_places(std::istream& in) {
+PlaceTable read_places(std::istream& in, const std::string& name) {
   PlaceTable table;
   std::optional<Header> header;
   std::string line;
@@ -146,7 +146,7 @@ PlaceTable read_places(std::istream& in) {
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     if (line.ends_with('\r')) line.pop_back();
     if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
-    const std::string where = "standard input, line " + std::to_string(number) + ": ";
+    const std::string where = name + ", line " + std::to_string(number) + ": ";
     if (std::exchange(is_first, false)) {
       header = read_header(line, where);
       if (header) {

@@ -29,7 +29,7 @@ struct PlaceTable {
 // must name one longitude (lon, longitude, lon_deg, lng, long, x) and one latitude (lat, latitude, lat_deg, y),
 // in any order among other columns, whatever the case; x and y count only where no other name does. Its columns
 // are separated by commas, semicolons or tabs; a field may stand in double quotes. Without a header a line is a
-// place. Throws UsageError that names the line.
-PlaceTable read_places(std::istream& in);
+// place. Throws UsageError that names the line and `name`, the file's.
+PlaceTable read_places(std::istream& in, const std::string& name = "standard input");
 
 }  // namespace vpe::app

@@ -24,6 +24,8 @@ constexpr std::array kActions{
     ActionInfo{K::kZoomIn, "zoom-in", "narrower field of view", false, true},
     ActionInfo{K::kZoomOut, "zoom-out", "wider field of view", false, true},
     ActionInfo{K::kZoomReset, "zoom-reset", "reset the field of view"},
+    ActionInfo{K::kNextMode, "next-mode", "next mode of motion: orbit, fly, walk"},
+    ActionInfo{K::kPreviousMode, "previous-mode", "previous mode of motion"},
     ActionInfo{K::kPlayPause, "play-pause", "play the flight, or pause"},
     ActionInfo{K::kRecord, "record", "start or stop recording a flight"},
     ActionInfo{K::kPlaceWaypoint, "place-waypoint", "place a waypoint here"},
@@ -35,6 +37,8 @@ constexpr std::array kActions{
     ActionInfo{K::kHidePanels, "hide-panels", "hide or show all panels"},
     ActionInfo{K::kFullScreen, "full-screen", "full screen, or window"},
     ActionInfo{K::kScreenshot, "screenshot", "save an image of the view"},
+    ActionInfo{K::kSearch, "search", "search a place by name or coordinates"},
+    ActionInfo{K::kCopy, "copy", "copy the place under the cursor, and a command"},
     ActionInfo{K::kHelp, "help", "show or hide this help"},
 };
 

@@ -21,6 +21,8 @@ enum class ActionKind {
   kZoomIn,
   kZoomOut,
   kZoomReset,
+  kNextMode,
+  kPreviousMode,
   kPlayPause,
   kRecord,
   kPlaceWaypoint,
@@ -32,6 +34,8 @@ enum class ActionKind {
   kHidePanels,
   kFullScreen,
   kScreenshot,
+  kSearch,
+  kCopy,
   kHelp,
 };
 

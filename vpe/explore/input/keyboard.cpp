@@ -17,6 +17,9 @@ constexpr std::array kHeld{
     HeldBinding{Key::kD, &C::right, 1, "right"},
     HeldBinding{Key::kE, &C::up, 1, "up"},
     HeldBinding{Key::kQ, &C::up, -1, "down"},
+    HeldBinding{Key::kPageUp, &C::up, 1, "up"},
+    HeldBinding{Key::kPageDown, &C::up, -1, "down"},
+    HeldBinding{Key::kSpace, &C::up, 1, "fly: up", MotionMode::kFly},
     HeldBinding{Key::kLeft, &C::yaw_right, -1, "turn left"},
     HeldBinding{Key::kRight, &C::yaw_right, 1, "turn right"},
     HeldBinding{Key::kUp, &C::pitch_up, 1, "turn up"},
@@ -47,6 +50,8 @@ std::vector<PressedBinding> make_pressed() {
       {kTypedPlus, {A::kZoomIn}},
       {{Key::kMinus, kAlone}, {A::kZoomOut}},
       {{Key::k0, kAlone}, {A::kZoomReset}},
+      {{Key::kF, kAlone}, {A::kNextMode}},
+      {{Key::kF, kShift}, {A::kPreviousMode}},
       {{Key::kSpace, kAlone}, {A::kPlayPause}},
       {{Key::kL, kAlone}, {A::kRecord}},
       {{Key::kP, kAlone}, {A::kPlaceWaypoint}},
@@ -58,6 +63,9 @@ std::vector<PressedBinding> make_pressed() {
       {{Key::kH, kAlone}, {A::kHidePanels}},
       {{Key::kF11, kAlone}, {A::kFullScreen}},
       {{Key::kF12, kAlone}, {A::kScreenshot}},
+      {{Key::kSlash, kAlone}, {A::kSearch}},
+      {{Key::kF, kCtrl}, {A::kSearch}},
+      {{Key::kC, kCtrl}, {A::kCopy}},
       {{Key::kF1, kAlone}, {A::kHelp}},
   };
   for (int number = 1; number <= Action::kMaxBookmark; ++number) {
@@ -71,6 +79,13 @@ std::vector<PressedBinding> make_pressed() {
 const std::vector<PressedBinding>& pressed() {
   static const std::vector<PressedBinding> all = make_pressed();
   return all;
+}
+
+bool acts_in(const HeldBinding& binding, MotionMode mode) { return !binding.mode || *binding.mode == mode; }
+
+// Arrows with Alt go through the history of views, and keys of turning up and down must not differ from them.
+bool is_pressed_with_alt(Key key) {
+  return key == Key::kLeft || key == Key::kRight || key == Key::kUp || key == Key::kDown;
 }
 
 // Returns the keys of one kind of action; numbered keys as first and last.
@@ -92,24 +107,31 @@ std::string keys_of(const ActionInfo& action) {
 std::span<const HeldBinding> held_bindings() { return kHeld; }
 std::span<const PressedBinding> pressed_bindings() { return pressed(); }
 
-Controls keyboard_controls(const KeySet& held, const Modifiers& with) {
+Controls keyboard_controls(const KeySet& held, const Modifiers& with, MotionMode mode) {
   Controls controls;
-  if (with.alt) return controls;
+  if (with.ctrl) return controls;
   for (const HeldBinding& binding : kHeld) {
-    if (held.has(binding.key)) controls.*binding.rate += binding.value;
+    const bool acts = acts_in(binding, mode) && !(with.alt && is_pressed_with_alt(binding.key));
+    if (acts && held.has(binding.key)) controls.*binding.rate += binding.value;
   }
+  for (double Controls::*rate : {&C::right, &C::up, &C::forward, &C::yaw_right, &C::pitch_up, &C::roll_right})
+    controls.*rate = std::clamp(controls.*rate, -1.0, 1.0);
   if (with.shift) controls.speed *= KeyboardOptions::kFaster;
-  if (with.ctrl) controls.speed *= KeyboardOptions::kSlower;
+  if (with.alt) controls.speed *= KeyboardOptions::kSlower;
   return controls;
 }
 
-std::vector<Action> keyboard_actions(std::span<const KeyPress> presses) {
+std::vector<Action> keyboard_actions(std::span<const KeyPress> presses, MotionMode mode) {
   std::vector<Action> all;
   for (const KeyPress& press : presses) {
     const auto found =
         std::find_if(pressed().begin(), pressed().end(),
                      [&press](const PressedBinding& binding) { return binding.chord == press.chord; });
     if (found == pressed().end()) continue;
+    const bool is_held = std::any_of(kHeld.begin(), kHeld.end(), [&](const HeldBinding& binding) {
+      return binding.mode == mode && binding.key == press.chord.key && press.chord.with == kAlone;
+    });
+    if (is_held) continue;
     if (press.is_repeat && !info(found->action.kind).repeats) continue;
     all.push_back(found->action);
   }
@@ -120,7 +142,7 @@ std::vector<HelpLine> keyboard_help() {
   std::vector<HelpLine> lines;
   for (const HeldBinding& binding : kHeld)
     lines.push_back({std::string(name(binding.key)), std::string(binding.meaning)});
-  lines.push_back({"Shift, Ctrl", "move faster, slower"});
+  lines.push_back({"Shift, Alt", "move faster, slower"});
   for (const ActionInfo& action : actions()) {
     if (std::string keys = keys_of(action); !keys.empty())
       lines.push_back({std::move(keys), std::string(action.meaning)});

@@ -1,6 +1,7 @@
 // Key bindings, and functions that convert keys to controls and actions.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,15 +10,18 @@
 #include "vpe/explore/input/actions.h"
 #include "vpe/explore/input/controls.h"
 #include "vpe/explore/input/keys.h"
+#include "vpe/explore/input/motion_mode.h"
 
 namespace vpe::explore {
 
-// Describes a key that acts while it is held, unless Alt is held too.
+// Describes a key that acts while it is held. With Ctrl none does, so that Ctrl + letter never moves; with Alt those
+// of the arrows do not.
 struct HeldBinding {
   Key key;
   double Controls::*rate;
   double value;  // of the rate, -1 or 1
   std::string_view meaning;
+  std::optional<MotionMode> mode = std::nullopt;  // in which it acts; nullopt: all
 };
 
 // Describes a key that acts when it goes down with exactly these modifiers.
@@ -26,17 +30,18 @@ struct PressedBinding {
   Action action;
 };
 
-// Return the tables. No chord has two meanings: a held key occurs in pressed chords only with Alt.
+// Return the tables. No chord has two meanings in a mode: a held key of all modes occurs in pressed chords only with
+// Alt, and one of a single mode has its meaning instead of that of a pressed chord.
 std::span<const HeldBinding> held_bindings();
 std::span<const PressedBinding> pressed_bindings();
 
 struct KeyboardOptions {
   static constexpr double kFaster = 4;     // Shift: factor on motion
-  static constexpr double kSlower = 0.25;  // Ctrl
+  static constexpr double kSlower = 0.25;  // Alt
 };
 
-// Converts held keys to controls. Opposite keys cancel each other.
-Controls keyboard_controls(const KeySet& held, const Modifiers& with);
+// Converts held keys to controls. Opposite keys cancel each other, and two keys of one direction count once.
+Controls keyboard_controls(const KeySet& held, const Modifiers& with, MotionMode mode = MotionMode::kOrbit);
 
 // Describes a key that went down, or that the system repeats while it is held.
 struct KeyPress {
@@ -45,7 +50,7 @@ struct KeyPress {
 };
 
 // Converts presses to actions, in their order. Repeats count only for actions that repeat.
-std::vector<Action> keyboard_actions(std::span<const KeyPress> presses);
+std::vector<Action> keyboard_actions(std::span<const KeyPress> presses, MotionMode mode = MotionMode::kOrbit);
 
 // Describes a line of the help panel, for example "1 ... 9" and the meaning.
 struct HelpLine {
