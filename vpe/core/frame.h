@@ -74,6 +74,10 @@ struct PagingRequest {
   // Longest wait; then the loaded tiles are drawn. Shorter: frames may be incomplete. By rays: the time that may be
   // spent with reading.
   double timeout_s = std::numeric_limits<double>::infinity();
+  // Longest wait of a frame that does not wait otherwise, where the exaggeration or the kind of shading has changed
+  // since the last frame, so that no loaded tile fits. Larger: the change is seen later, with the same tiles; 0: at
+  // once, with coarse ones.
+  double change_wait_s = 0;
   // Time for uploads in a frame that does not wait; one tile is uploaded in any case. Smaller: steadier frame
   // times, later refinement.
   double upload_ms = 4;  // of triangles

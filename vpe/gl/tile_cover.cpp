@@ -144,8 +144,8 @@ lod::Selection TileCover::readable(const core::View& view) const {
   return std::move(result.drawn);
 }
 
-bool TileCover::load_all(const core::DrawRequest& request) {
-  const double limit_s = std::min(request.paging.timeout_s, 1e9);
+bool TileCover::load_all(const core::DrawRequest& request, double timeout_s) {
+  const double limit_s = std::min(timeout_s, 1e9);
   const TileStreamer::Deadline deadline =
       limit_s < 1e9 ? Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * limit_s))
                     : TileStreamer::Deadline::max();

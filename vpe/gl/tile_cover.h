@@ -35,7 +35,7 @@ struct SceneTile {
 // Typical usage, once a frame, after TileStreamer::begin_frame():
 //
 //   cover.select(request);
-//   if (!cover.load_all(request)) ...    // or cover.use_resident(request), which does not wait
+//   if (!cover.load_all(request, 1.5)) ...    // or cover.use_resident(request), which does not wait
 //   cover.lay_out(request.view);
 //   for (const SceneTile& tile : cover.tiles()) ...
 class TileCover {
@@ -48,9 +48,9 @@ class TileCover {
   void select(const core::DrawRequest& request);
 
   // Loads all that is selected and not hidden, and covers the frame with it. Tiles that cannot be read are
-  // covered by their nearest readable ancestors. Throws paging::PlanetError if that fails too. Returns false when the request's time-out has passed: then the
-  // frame is covered with what is resident.
-  bool load_all(const core::DrawRequest& request);
+  // covered by their nearest readable ancestors. Throws paging::PlanetError if that fails too. Returns false when
+  // the time-out has passed: then the frame is covered with what is resident.
+  bool load_all(const core::DrawRequest& request, double timeout_s);
 
   // Covers the frame with what is resident. Loads only roots of faces that would be uncovered.
   void use_resident(const core::DrawRequest& request);

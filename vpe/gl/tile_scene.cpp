@@ -40,13 +40,15 @@ TileScene::TileScene(const std::shared_ptr<const paging::PlanetFile>& planet, co
 
 void TileScene::prepare(const core::DrawRequest& request) {
   auto start = Clock::now();
-  streamer_.begin_frame(request);
+  const bool starts_anew = streamer_.begin_frame(request);
   cover_.select(request);
   select_ms_ = ms_since(start);
   start = Clock::now();
   settled_ = true;
   if (request.paging.wait) {
-    settled_ = cover_.load_all(request);
+    settled_ = cover_.load_all(request, request.paging.timeout_s);
+  } else if (starts_anew && request.paging.change_wait_s > 0) {
+    settled_ = cover_.load_all(request, request.paging.change_wait_s);
   } else {
     streamer_.take_loaded(request.paging.upload_ms);
     cover_.use_resident(request);

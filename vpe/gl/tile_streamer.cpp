@@ -79,21 +79,22 @@ TileStreamer::TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, con
              options.threads > 0 ? std::min(options.threads, base::kMaxThreads) : base::default_threads(),
              share(kLoadedShare)) {}
 
-void TileStreamer::begin_frame(const core::DrawRequest& request) {
+bool TileStreamer::begin_frame(const core::DrawRequest& request) {
   ++frame_;
   uploaded_ = 0;
   evicted_ = 0;
   new_failures_.clear();
   // The material stays that of the images before, so that their meshes serve and their textures are kept.
   wants_textures_ = request.want_colour;
-  set_shading(request);
+  return set_shading(request);
 }
 
 bool TileStreamer::is_textured(const lod::TileKey& tile) const {
   return wants_textures_ && gl::is_textured(tile, *planet_, material_);
 }
 
-void TileStreamer::set_shading(const core::DrawRequest& request) {
+// Returns true if meshes or textures were dropped.
+bool TileStreamer::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (!paging::needs_scale(appearance, has_image)) {
@@ -104,22 +105,26 @@ void TileStreamer::set_shading(const core::DrawRequest& request) {
   }
   // Resident meshes without occluders would hide nothing. Once asked for, occluders are made from then on, so
   // that switching to and fro loses nothing.
+  bool lost = false;
   if (!needs_occluders_ && request.settings.occlusion != core::Occlusion::kOff) {
     needs_occluders_ = true;
+    lost = meshes_.bytes() > 0;
     meshes_.clear();
   }
   const TileMaterial now = gl::material(appearance, request.sun, has_image, scale_);
-  if (shading_ && material_ == now) return;
+  if (shading_ && material_ == now) return lost;
   // Meshes of two exaggerations do not meet; another method needs other vertices and programs.
   const bool other_meshes = !shading_ || shading_->exaggeration != now.shading.exaggeration;
   const bool other_method = material_.method != now.method || material_.shows_nodata != now.shows_nodata ||
                             material_.shading.flat != now.shading.flat;
+  lost |= (other_meshes || other_method) && meshes_.bytes() > 0;
   if (other_meshes) ground_.clear();
   if (other_meshes || other_method) meshes_.clear();
   if (other_method) textures_.clear();
   material_ = now;
   has_other_shadings_ = true;
   if (!shading_ || *shading_ != now.shading) shading_ = std::make_shared<const ShadingParams>(now.shading);
+  return lost;
 }
 
 void TileStreamer::drop_other_shadings() {

@@ -44,7 +44,8 @@ class TileStreamer {
   TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options);
 
   // Begins a frame. Drops what a change of appearance makes useless. A frame without colours needs no textures.
-  void begin_frame(const core::DrawRequest& request);
+  // Returns true if no resident tile fits any more.
+  bool begin_frame(const core::DrawRequest& request);
 
   const TileMaterial& material() const { return material_; }
   double exaggeration() const { return shading_->exaggeration; }
@@ -129,7 +130,7 @@ class TileStreamer {
 
  private:
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
-  void set_shading(const core::DrawRequest& request);
+  bool set_shading(const core::DrawRequest& request);
   bool is_textured(const lod::TileKey& tile) const;
   bool is_resident(const PageKey& page, std::uint64_t frame);
   std::vector<PageKey> absent_pages(const lod::Selection& selection, const core::View& view,

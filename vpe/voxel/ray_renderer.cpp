@@ -75,7 +75,7 @@ class RayRenderer : public core::Renderer {
   };
 
   core::DrawResult draw_image(const core::DrawRequest& request);
-  ReadingRule reading_rule(const core::PagingRequest& paging, bool reads_all) const;
+  ReadingRule reading_rule(const core::DrawRequest& request, bool reads_all);
   bool is_below_ground(const core::DrawRequest& request) const;
   void check_size(const core::DrawRequest& request) const;
   bool has_room_for_next() const;
@@ -97,6 +97,7 @@ class RayRenderer : public core::Renderer {
   FramePrefetcher prefetcher_;
   TileLoader loader_;
   SectorCaster hint_sectors_;
+  std::optional<double> exaggeration_;        // of the last image
   std::unordered_set<std::string> reported_;  // failures
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
@@ -233,10 +234,14 @@ void RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& ran
   image.usage = std::move(*usage);
 }
 
-ReadingRule RayRenderer::reading_rule(const core::PagingRequest& paging, bool reads_all) const {
+ReadingRule RayRenderer::reading_rule(const core::DrawRequest& request, bool reads_all) {
+  const core::PagingRequest& paging = request.paging;
+  const double exaggeration = request.settings.exaggeration;
+  const bool starts_anew = std::exchange(exaggeration_, exaggeration).value_or(exaggeration) != exaggeration;
   if (reads_all) return ReadingRule::always();
-  if (!paging.wait) return ReadingRule::never();
-  return {paging.timeout_s, pool_.threads()};
+  if (paging.wait) return {paging.timeout_s, pool_.threads()};
+  if (starts_anew && paging.change_wait_s > 0) return {paging.change_wait_s, pool_.threads()};
+  return ReadingRule::never();
 }
 
 // Finds what upcoming views will lack, with few rays.
@@ -339,7 +344,7 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   frame.colour.resize(request.want_colour ? pixels : 0);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
-  Image image(caster_.store(), request, reading_rule(request.paging, reads_all));
+  Image image(caster_.store(), request, reading_rule(request, reads_all));
   if (!request.want_colour) {
     cast(request, frame.range_m, image);
   } else if (request.settings.samples > 1) {
