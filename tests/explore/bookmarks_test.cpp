@@ -140,6 +140,21 @@ TEST(Bookmarks, RoundTripsToTheBit) {
   });
 }
 
+TEST(Bookmarks, ARenamedBookmarkKeepsItsLine) {
+  Bookmarks b =
+      *parse_bookmarks("# mine\n1 0 0 0 0 0 0 60 one\n- 1 0 0 0 0 0 60 two\n- 2 0 0 0 0 0 60 three\n", "B")
+           .bookmarks;
+  EXPECT_EQ(b.rename(1, "  zwei "), "");
+  EXPECT_EQ(b.rename(0, ""), "");  // it has a key
+  EXPECT_EQ(b.to_text(), "# mine\n1 0 0 0 0 0 0 60\n- 1 0 0 0 0 0 60 zwei\n- 2 0 0 0 0 0 60 three\n");
+  EXPECT_EQ(b.rename(2, "three"), "");
+  EXPECT_NE(b.rename(2, "zwei"), "");
+  EXPECT_NE(b.rename(2, " "), "");
+  EXPECT_NE(b.rename(2, "a\nb"), "");
+  EXPECT_NE(b.rename(3, "four"), "");
+  EXPECT_EQ(b.all()[2].name, "three");
+}
+
 TEST(BookmarkFile, IsCreatedWithItsFolderAndReadBack) {
   const test_support::TempDir folder;
   const auto path = folder / "data/vpe/bookmarks";

@@ -93,6 +93,30 @@ TEST_F(Editor, MovesKeepingHeightTimeAndAttitude) {
   EXPECT_TRUE(wanted.above_terrain);
 }
 
+TEST_F(Editor, ViewsMoveWithThePosesAroundThem) {
+  const std::string old(kFlight);
+  FlightEditor editor(flight_of("flight 1.1" + old.substr(8, old.size() - 8 - 10) +
+                                "at 20 view fov=30 backend=ray\nat 22 view eyes=sbs\nat 25 end\n"),
+                      mars::kMarsRadius_m);
+  const Flight before = editor.flight();
+  ASSERT_EQ(before.views.size(), 2U);
+  ASSERT_EQ(editor.scale_times(2), "");
+  EXPECT_EQ(editor.flight().views[0].time_s, 40);
+  EXPECT_EQ(editor.flight().views[1].time_s, 44);
+  EXPECT_EQ(editor.flight().views[0].view, before.views[0].view);
+  EXPECT_TRUE(editor.undo());
+  ASSERT_EQ(editor.keep_speed(kDegree_m), "");
+  EXPECT_EQ(editor.flight().views[0].time_s, editor.flight().waypoints.back().time_s);
+  EXPECT_NEAR(editor.flight().views[1].time_s, editor.flight().views[0].time_s + 2, 1e-9);
+  ASSERT_EQ(editor.move(1, {11, 1}), "");
+  EXPECT_EQ(editor.flight().views[0].view, before.views[0].view);
+  EXPECT_EQ(scripts::parse_flight(editor.to_text(), "").flight, editor.flight());
+  FlightEditor close(flight_of("flight 1.1\nat 0 pose lon=0 lat=0 alt=1\nat 1 view fov=30\n"
+                               "at 1.0000000000000002 view fov=31\n"),
+                     mars::kMarsRadius_m);
+  EXPECT_NE(close.scale_times(1e-310).find("too close together"), std::string::npos);
+}
+
 TEST_F(Editor, ADragIsOneStepOfUndo) {
   ASSERT_EQ(editor_.move(1, {10, 0}), "");  // pressed, not moved yet
   EXPECT_EQ(editor_.undo_text(), "");

@@ -115,6 +115,26 @@ TEST_F(SessionLogs, TheCameraStandsStillInAPause) {
   EXPECT_EQ(flight().waypoints.size(), 4U);  // no hold where nothing moved
 }
 
+// A zoom after a pause begins with the image, not with the pause.
+TEST_F(SessionLogs, TheFieldOfViewStandsStillInAPause) {
+  const mars::Pose here{10, 20, 5000, 0, -10, 0};
+  const auto view = [](double fov_deg) {
+    scripts::ViewState state;
+    state.fov_deg = fov_deg;
+    return state;
+  };
+  log_.frame({1, here, {}, view(50)}, {});
+  log_.frame({60, here, {}, view(20)}, {});
+  log_.frame({61, here, {}}, {});  // as a panorama, which has no field of view of the session
+  const scripts::Path path = replay();
+  for (const double t : {0.0, 1.0, 30.0, 59.95}) EXPECT_EQ(path.at(t).view.fov_deg, 50) << t;
+  EXPECT_LT(path.at(59.99).view.fov_deg, 50);
+  EXPECT_GT(path.at(59.99).view.fov_deg, 20);
+  for (const double t : {60.0, 60.5, 61.0, 70.0}) EXPECT_EQ(path.at(t).view.fov_deg, 20) << t;
+  EXPECT_FALSE(log_.frame({62, here, {}, view(0)}, {}).has_value());
+  EXPECT_FALSE(log_.frame({62, here, {}, view(std::nan(""))}, {}).has_value());
+}
+
 TEST_F(SessionLogs, RegionsAreAddedAndRemoved) {
   const core::InterestRegion a{1, 2, 3000, 2};
   const core::InterestRegion b{400, 5, 6000, -1};

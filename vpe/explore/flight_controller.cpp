@@ -20,6 +20,7 @@ std::string FlightController::load(const scripts::Flight& flight) {
     FlightPlayer player(scripts::Path(flight, radius_m_, terrain_height_m_), radius_m_);
     editor_.emplace(std::move(editor));
     player_.emplace(std::move(player));
+    ++loads_;
     player_revision_ = editor_->revision();
     player_exaggeration_ = 1;
     problem_.clear();
@@ -31,6 +32,7 @@ std::string FlightController::load(const scripts::Flight& flight) {
 
 void FlightController::clear() {
   editor_.reset();
+  ++loads_;
   player_.reset();
   problem_.clear();
 }
@@ -70,7 +72,7 @@ FlightPlayer* FlightController::player(double exaggeration) {
     player_->set_loop(before->loops());
     player_->scrub(before->time_s());
     player_->set_look_offset(before->look_offset());
-    player_->keep_settings_of(*before);
+    player_->keep_changes_of(*before);
     if (before->is_playing()) player_->play();
   }
   return &*player_;

@@ -36,11 +36,14 @@ class FlightController {
   // Returns what is wrong, or "".
   [[nodiscard]] std::string append(const mars::Pose& pose, double speed_m_per_s);
 
+  // Returns a number that changes whenever load(), clear() or append() replaces the editor.
+  std::uint64_t loads() const { return loads_; }
+
   // Returns the editor, or null if there is no flight.
   FlightEditor* editor() { return editor_ ? &*editor_ : nullptr; }
   const FlightEditor* editor() const { return editor_ ? &*editor_ : nullptr; }
   // Returns a player of the flight as edited. Remakes it after an edit, but keeps its time, speed, loop, look
-  // offset and the user's settings. Returns null if there is no flight or it cannot be played (problem()).
+  // offset and what the user has changed. Returns null if there is no flight or it cannot be played (problem()).
   FlightPlayer* player(double exaggeration);
   // Returns why the flight cannot be played, or "".
   const std::string& problem() const { return problem_; }
@@ -49,6 +52,7 @@ class FlightController {
   double radius_m_;
   scripts::TerrainHeight terrain_height_m_;
   std::optional<FlightEditor> editor_;
+  std::uint64_t loads_ = 0;
   std::uint64_t player_revision_ = 0;  // FlightEditor::revision() that the player was made from
   double player_exaggeration_ = 1;
   std::optional<FlightPlayer> player_;

@@ -17,7 +17,7 @@ using scripts::Waypoint;
 
 namespace {
 
-constexpr double kOpposite_rad = 1e-6;  // as scripts::Path
+constexpr double kOppositePoses_rad = 1e-6;  // as scripts::Path
 constexpr double kStanding_m = 1;
 
 mars::LonLat place_of(const Waypoint& w) { return {w.lon_deg, w.lat_deg}; }
@@ -34,16 +34,18 @@ std::string expected_by(const scripts::ParsedFlight& parsed) {
 
 std::string problem_in(const std::string& lines) { return expected_by(scripts::parse_flight(lines, "")); }
 
-std::string problem_of(const Waypoint& w) { return problem_in(scripts::version_line() + scripts::to_line(w)); }
+std::string first_line() { return scripts::version_line(scripts::FlightVersion::k1); }
+
+std::string problem_of(const Waypoint& w) { return problem_in(first_line() + scripts::to_line(w)); }
 
 std::string problem_of_speed(double speed_m_per_s) {
   return speed_m_per_s > 0 && std::isfinite(speed_m_per_s) ? "" : "a speed must be above 0 m/s";
 }
 
 std::size_t bytes_of(const Flight& f) {
-  std::size_t bytes = sizeof f + f.waypoints.size() * sizeof(Waypoint) +
-                      f.heads.size() * sizeof(scripts::HeadCommand) +
-                      f.interests.size() * sizeof(scripts::InterestCommand);
+  std::size_t bytes =
+      sizeof f + f.waypoints.size() * sizeof(Waypoint) + f.heads.size() * sizeof(scripts::HeadCommand) +
+      f.interests.size() * sizeof(scripts::InterestCommand) + f.views.size() * sizeof(scripts::ViewCommand);
   for (const scripts::SetCommand& set : f.sets) bytes += sizeof set + set.key.size() + set.text.size();
   return bytes;
 }
@@ -56,6 +58,7 @@ FlightEditor::FlightEditor(Flight flight, double radius_m) : radius_m_(radius_m)
     throw std::invalid_argument(problem);
   }
   undo_.clear();
+  made_ = 0;
   saved_ = flight_;
 }
 
@@ -97,7 +100,7 @@ FlightEditor::Problem FlightEditor::check_neighbours(const Flight& flight, std::
       return "the time must be " + std::string(is_before ? "after " : "before ") + format_number(o.time_s) +
              " s, the time of the neighbouring pose, not " + format_number(w.time_s);
     }
-    if (mars::distance_rad(place_of(o), place_of(w)) > mars::kPi - kOpposite_rad) {
+    if (mars::distance_rad(place_of(o), place_of(w)) > mars::kPi - kOppositePoses_rad) {
       return "consecutive poses may not be on opposite sides of the planet: place one between them";
     }
     return "";
@@ -115,7 +118,10 @@ FlightEditor::Problem FlightEditor::change(Flight next, std::string what, bool m
   drag_.clear();
   if (next == flight_) return "";
   redo_.clear();
-  if (!merges) undo_.push_back({std::move(flight_), std::move(what)});
+  if (!merges) {
+    undo_.push_back({std::move(flight_), std::move(what)});
+    ++made_;
+  }
   flight_ = std::move(next);
   ++revision_;
   forget_old_steps();
@@ -127,6 +133,7 @@ void FlightEditor::forget_old_steps() {
   for (auto step = undo_.rbegin(); step != undo_.rend(); ++step) {
     bytes += bytes_of(step->flight);
     if (bytes <= FlightEditorLimits::kUndoBytes || step == undo_.rbegin()) continue;
+    dropped_ += static_cast<std::uint64_t>(step.base() - undo_.begin());
     undo_.erase(undo_.begin(), step.base());
     return;
   }
@@ -225,6 +232,7 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
   all(next.heads);
   all(next.sets);
   all(next.interests);
+  all(next.views);
   if (next.end_s) next.end_s = time_s(*next.end_s);
   const auto ascend = [](const auto& commands) {
     for (std::size_t i = 1; i < commands.size(); ++i) {
@@ -232,7 +240,7 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
     }
     return true;
   };
-  if (!ascend(next.waypoints) || !ascend(next.heads)) {
+  if (!ascend(next.waypoints) || !ascend(next.heads) || !ascend(next.views)) {
     return "the times would be too close together to tell them apart";
   }
   return change(std::move(next), std::move(what));
@@ -268,8 +276,7 @@ FlightEditor::Problem FlightEditor::keep_speed(double speed_m_per_s) {
 FlightEditor::Problem FlightEditor::set_view(const scripts::FlightView& view) {
   Flight next = flight_;
   next.view = view;
-  if (Problem problem =
-          problem_in(scripts::version_line() + scripts::to_line(view) + scripts::to_line(Waypoint()));
+  if (Problem problem = problem_in(first_line() + scripts::to_line(view) + scripts::to_line(Waypoint()));
       !problem.empty()) {
     return "a view needs " + problem;
   }

@@ -73,7 +73,7 @@ class FlightEditor {
   [[nodiscard]] Problem scale_times(double factor);
 
   // Retimes legs of at least 1 m for this ground speed; shorter ones keep their time, and so does the first
-  // pose. Looks, settings, regions and the end move with the poses around them.
+  // pose. Looks, settings, regions, views and the end move with the poses around them.
   [[nodiscard]] Problem keep_speed(double speed_m_per_s);
 
   // Returns the length from the first to the last pose, metres.
@@ -84,7 +84,7 @@ class FlightEditor {
   // Sets the time at which the flight ends; nullopt: it ends with its last command.
   [[nodiscard]] Problem set_end(std::optional<double> end_s);
 
-  // Replaces the whole flight, for edits of looks, settings and regions. `what` names the edit for undo.
+  // Replaces the whole flight, for edits of looks, settings, regions and views. `what` names the edit for undo.
   [[nodiscard]] Problem replace_all(scripts::Flight flight, const std::string& what);
 
   // Return the edit that undo() or redo() would revert or repeat, such as "move pose 3", or "" if there is
@@ -93,6 +93,13 @@ class FlightEditor {
   std::string redo_text() const;
   bool undo();
   bool redo();
+  void forget_redo() { redo_.clear(); }
+  // Return the numbers of steps that undo() and redo() can take, of all steps ever made, and of the oldest ones
+  // that were dropped.
+  std::size_t undo_steps() const { return undo_.size(); }
+  std::size_t redo_steps() const { return redo_.size(); }
+  std::uint64_t steps_made() const { return made_; }
+  std::uint64_t steps_dropped() const { return dropped_; }
 
   // Returns true if the flight differs from the one given to the constructor or last marked as saved.
   bool is_changed() const { return !(flight_ == saved_); }
@@ -127,6 +134,8 @@ class FlightEditor {
   std::uint64_t saves_ = 0;
   std::deque<Step> undo_;
   std::deque<Step> redo_;
+  std::uint64_t made_ = 0;
+  std::uint64_t dropped_ = 0;
   std::string drag_;  // name of the undo step that a move may continue
 };
 

@@ -76,6 +76,17 @@ core::Settings FlightPlayer::settings(const core::Settings& base) const {
   return settings;
 }
 
+scripts::ViewState FlightPlayer::view() const {
+  scripts::ViewState view = path_.at(time_s_).view;
+  if (keeps_.fov) view.fov_deg.reset();
+  if (keeps_.backend) view.backend.reset();
+  if (keeps_.eyes) {
+    view.eyes.reset();
+    view.eye_base_m.reset();
+  }
+  return view;
+}
+
 std::string FlightPlayer::keep_setting(const std::string& key, const std::string& text) {
   std::string problem = core::Settings().set(key, text);
   if (problem.empty()) kept_[key] = text;

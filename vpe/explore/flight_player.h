@@ -1,4 +1,4 @@
-// Playback of a flight: play, pause, scrub, speed, loop. The user can look around at the same time.
+// Playback of a flight: play, pause, scrub, speed, loop. The user can look around and zoom at the same time.
 //
 // The player has no clock: the caller passes the elapsed time to advance(). The state at a time is that of
 // scripts::Path and does not depend on how that time was reached.
@@ -72,8 +72,22 @@ class FlightPlayer {
   [[nodiscard]] std::string keep_setting(const std::string& key, const std::string& text);
   void release_setting(const std::string& key) { kept_.erase(key); }
   void release_settings() { kept_.clear(); }
-  // Copies the user's settings from another player of the same flight.
-  void keep_settings_of(const FlightPlayer& other) { kept_ = other.kept_; }
+
+  // Returns the view now: the flight's, without the members that the user has taken over.
+  scripts::ViewState view() const;
+
+  // Says that the user has taken over the field of view, what draws, or for how many eyes at what distance. view()
+  // says nothing about it until release_view().
+  void keep_fov() { keeps_.fov = true; }
+  void keep_backend() { keeps_.backend = true; }
+  void keep_eyes() { keeps_.eyes = true; }
+  void release_view() { keeps_ = {}; }
+
+  // Copies what the user has changed, settings and view, from another player of the same flight.
+  void keep_changes_of(const FlightPlayer& other) {
+    kept_ = other.kept_;
+    keeps_ = other.keeps_;
+  }
 
   std::span<const scripts::InterestCommand> interests() const { return path_.interests(time_s_); }
 
@@ -86,6 +100,11 @@ class FlightPlayer {
   bool loop_ = false;
   mars::HeadAngles offset_;
   std::map<std::string, std::string> kept_;
+  struct Kept {
+    bool fov = false;
+    bool backend = false;
+    bool eyes = false;
+  } keeps_;
 };
 
 }  // namespace vpe::explore

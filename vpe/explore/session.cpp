@@ -11,9 +11,8 @@ namespace vpe::explore {
 
 namespace {
 
-constexpr double kTilt_deg_px = 0.25;  // of a drag, on an image of 720 rows
-constexpr double kWheelNotch = 0.8;    // of the distance
-constexpr double kDoubleClick = 0.4;   // of the distance
+constexpr double kSteepestEntry_deg = 10;  // downwards, of a view that begins to walk
+constexpr double kHighestEntry_deg = 30;
 
 // Adds angles. Pitch is clamped: a log cannot hold a steeper look.
 mars::HeadAngles added(const mars::HeadAngles& a, const mars::HeadAngles& b) {
@@ -40,7 +39,10 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
       flights_(surface_->planet_radius_m(), terrain_height_of(surface_)),
       interest_(options.interest),
       mouse_speed_(options.mouse_speed),
-      invert_wheel_(options.invert_wheel) {
+      invert_wheel_(options.invert_wheel),
+      throws_(options.throws),
+      tilt_on_arrival_(options.tilt_on_arrival),
+      mover_(options.vehicle) {
   ground_ = ground_of(surface_, settings_.values().exaggeration);
   set_fov(options.fov_deg);
   pose_ = kept_clear(options.start ? *options.start : overview({0, 0}, screen_, ground_.radius_m), ground_);
@@ -50,7 +52,7 @@ void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
   surface_ = std::move(surface);
   flights_.set_terrain(terrain_height_of(surface_));
   ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
-  if (!follows_) pose_ = kept_clear(pose_, ground_);
+  if (!follows_) pose_ = mover_.put(pose_, ground_);
   ++changes_;
 }
 
@@ -62,9 +64,11 @@ core::View Session::view() const {
   return view;
 }
 
-mars::Pose Session::seen() const {
-  return is_ahead(look_) ? pose_
-                         : mars::to_pose(mars::to_camera(pose_, look_, ground_.radius_m), ground_.radius_m);
+mars::Pose Session::seen() const { return seen_of(pose_); }
+
+mars::Pose Session::seen_of(const mars::Pose& platform) const {
+  return is_ahead(look_) ? platform
+                         : mars::to_pose(mars::to_camera(platform, look_, ground_.radius_m), ground_.radius_m);
 }
 
 // Removes the head's rotation (axes right, ahead and up of its platform) from the camera's axes.
@@ -78,10 +82,6 @@ mars::Pose Session::platform_of(const mars::Pose& seen) const {
            camera.axes.forward * head.forward[k];
   };
   return mars::to_pose({camera.position_m, {axis(0), axis(2), axis(1)}}, ground_.radius_m);
-}
-
-double Session::wheel_factor(double notches) const {
-  return std::pow(kWheelNotch, std::clamp(invert_wheel_ ? -notches : notches, -10.0, 10.0));
 }
 
 std::string Session::set(std::string_view key, std::string_view text) {
@@ -105,7 +105,7 @@ void Session::follow_settings() {
   ++changes_;
   if (shown_settings_.values().exaggeration == before) return;
   ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
-  if (!follows_) pose_ = kept_clear(pose_, ground_);
+  if (!follows_) pose_ = mover_.put(pose_, ground_);
 }
 
 std::vector<core::InterestRegion> Session::all_interest() {
@@ -127,7 +127,16 @@ void Session::resize(int width, int height) {
 }
 
 void Session::set_fov(double fov_deg) {
-  if (std::isfinite(fov_deg)) screen_.fov_deg = std::clamp(fov_deg, kMinFov_deg, kMaxFov_deg);
+  if (!std::isfinite(fov_deg)) return;
+  fov_deg_ = std::clamp(fov_deg, kMinFov_deg, kMaxFov_deg);
+  if (FlightPlayer* flight = follows_ ? player() : nullptr; flight != nullptr) flight->keep_fov();
+  follow_fov();
+}
+
+// Updates the field of view in effect: the user's, or that of a followed flight.
+void Session::follow_fov() {
+  FlightPlayer* flight = follows_ ? player() : nullptr;
+  screen_.fov_deg = flight != nullptr ? flight->view().fov_deg.value_or(fov_deg_) : fov_deg_;
 }
 
 std::string Session::follow(bool play) {
@@ -136,6 +145,7 @@ std::string Session::follow(bool play) {
     return flights_.problem().empty() ? "there is no flight yet; place waypoints or open a flight"
                                       : flights_.problem();
   stop();
+  leave_ground();
   follows_ = true;
   if (play)
     flight->play();
@@ -151,9 +161,11 @@ void Session::leave_flight() {
     flight->pause();
     flight->reset_look_offset();
     flight->release_settings();
+    flight->release_view();
   }
   follows_ = false;
   follow_settings();
+  follow_fov();
   pose_ = kept_clear(pose_, ground_);
   look_ = tracker_;
 }
@@ -162,6 +174,7 @@ void Session::scrub(double time_s) {
   FlightPlayer* flight = player();
   if (flight == nullptr) return;
   stop();
+  leave_ground();
   follows_ = true;
   flight->scrub(time_s);
   take_flight_state(tracker_);
@@ -177,17 +190,65 @@ void Session::take_flight_state(const mars::HeadAngles& tracker) {
   pose_ = state.pose;
   look_ = added(state.head, tracker);
   follow_settings();
+  follow_fov();
+}
+
+void Session::stop() {
+  going_.reset();
+  throw_.reset();
+  wheel_.reset();
+  mover_.rest();
+}
+
+void Session::end_motion() {
+  throw_.reset();
+  if (wheel_) pose_ = wheel_->motion.to;
+  wheel_.reset();
+}
+
+void Session::leave_ground() {
+  if (mover_.is_on_ground()) mover_.set_mode(MotionMode::kOrbit);
+  drive_look_ = {};
+}
+
+// Returns the pose as the mode holds it, and changes the mode for a pose high above the ground.
+mars::Pose Session::stand_at(const mars::Pose& pose) {
+  if (mover_.is_on_ground() && height_above_ground_m(pose, ground_) > kLeavesGround_m) leave_ground();
+  return mover_.put(pose, ground_);
+}
+
+void Session::set_mode(MotionMode mode) {
+  leave_flight();
+  stop();
+  if (mode == mover_.mode()) return;
+  if (mover_.mode() == MotionMode::kDrive) {
+    // The view stays, not the vehicle's attitude.
+    pose_ = mars::to_pose(mars::to_camera(pose_, drive_look_, ground_.radius_m), ground_.radius_m);
+    drive_look_ = {};
+    look_ = tracker_;
+  }
+  mover_.set_mode(mode);
+  if (!mover_.is_on_ground()) return;
+  mars::Pose goal = pose_;
+  goal.pitch_deg = std::clamp(goal.pitch_deg, -kSteepestEntry_deg, kHighestEntry_deg);
+  goal.roll_deg = 0;
+  begin_going(mover_.put(goal, ground_));
 }
 
 void Session::put(const mars::Pose& pose) {
   leave_flight();
   stop();
-  pose_ = kept_clear(pose, ground_);
+  pose_ = stand_at(pose);
 }
 
 void Session::go(const mars::Pose& pose) {
   leave_flight();
-  going_.emplace(pose_, kept_clear(pose, ground_), ground_);
+  stop();
+  begin_going(stand_at(pose));
+}
+
+void Session::begin_going(const mars::Pose& goal) {
+  going_.emplace(pose_, goal, ground_);
   gone_s_ = 0;
 }
 
@@ -240,63 +301,25 @@ void Session::advance(double dt_s, const Controls& controls, const mars::HeadAng
     }
     leave_flight();
   }
-  look_ = tracker;
-  if (any(controls)) stop();
+  look_ = mode() == MotionMode::kDrive ? added(drive_look_, tracker) : tracker;
+  if (any(controls)) {
+    going_.reset();
+    end_motion();
+  }
   if (going_) {
     gone_s_ += std::max(dt_s, 0.0);
     pose_ = going_->at(gone_s_, ground_);
     if (gone_s_ >= going_->duration_s()) going_.reset();
     return;
   }
-  pose_ = steered(pose_, controls, dt_s, ground_);
-}
-
-void Session::press(MouseUse use, glm::dvec2 xy) {
-  stop();
-  use_ = use;
-  begun_ = seen();
-  begun_xy_ = xy;
-  held_m_ = use == MouseUse::kHold && !follows_ ? ground_at(begun_, screen_, xy, ground_) : std::nullopt;
-  if (FlightPlayer* flight = follows_ ? player() : nullptr; flight != nullptr)
-    begun_look_ = flight->look_offset();
-}
-
-void Session::drag(glm::dvec2 xy) {
-  if (follows_) {
-    FlightPlayer* flight = player();
-    if (flight == nullptr || use_ == MouseUse::kNone) return;
-    // Dragging holds the sky: dragging to the left looks to the right.
-    const mars::Pose rotation = panned({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
-    flight->set_look_offset({begun_look_.yaw_deg + mouse_speed_ * rotation.yaw_deg,
-                             begun_look_.pitch_deg + mouse_speed_ * rotation.pitch_deg, begun_look_.roll_deg});
-    take_flight_state(tracker_);
-    return;
+  if (go_on(std::max(dt_s, 0.0))) return;
+  if (mode() == MotionMode::kDrive) {
+    const double dt = std::min(std::max(dt_s, 0.0), SteerLimits::kLongestStep_s);
+    drive_look_ = added(drive_look_, {controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
+                                      controls.pitch_up * SteerLimits::kRotation_deg_s * dt, 0});
+    look_ = added(drive_look_, tracker);
   }
-  if (use_ == MouseUse::kHold) {
-    pose_ = platform_of(held_m_ ? dragged(begun_, screen_, *held_m_, xy, ground_)
-                                : panned(begun_, screen_, begun_xy_, xy));
-  } else if (use_ == MouseUse::kTilt) {
-    const glm::dvec2 by = (xy - begun_xy_) * (mouse_speed_ * kTilt_deg_px * 720.0 / screen_.height);
-    pose_ = platform_of(tilted(begun_, screen_, by.x, by.y, ground_));
-  }
-}
-
-void Session::wheel(glm::dvec2 xy, double notches) {
-  if (follows_) {
-    set_fov(screen_.fov_deg * wheel_factor(notches));
-    return;
-  }
-  stop();
-  pose_ = platform_of(zoomed(seen(), screen_, xy, wheel_factor(notches), ground_));
-}
-
-void Session::fly_towards(glm::dvec2 xy) {
-  if (follows_) return;
-  const mars::Pose from = seen();
-  const std::optional<glm::dvec3> point = ground_at(from, screen_, xy, ground_);
-  if (!point) return;
-  const double distance_m = glm::length(mars::to_camera(from, ground_.radius_m).position_m - *point);
-  go(platform_of(looking_at(from, *point, distance_m * kDoubleClick, ground_)));
+  pose_ = mover_.advance(pose_, controls, dt_s, ground_);
 }
 
 }  // namespace vpe::explore

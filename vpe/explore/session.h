@@ -15,11 +15,14 @@
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/interest.h"
 #include "vpe/core/view.h"
+#include "vpe/explore/drag_throw.h"
 #include "vpe/explore/flight_controller.h"
 #include "vpe/explore/fly_to.h"
 #include "vpe/explore/input/controls.h"
 #include "vpe/explore/mouse.h"
+#include "vpe/explore/mover.h"
 #include "vpe/explore/terrain_query.h"
+#include "vpe/explore/wheel_zoom.h"
 
 namespace vpe::explore {
 
@@ -28,23 +31,30 @@ struct SessionOptions {
   std::optional<mars::Pose> start;  // nullopt: the whole planet
   double fov_deg = 50;
   std::vector<core::InterestRegion> interest;
-  double mouse_speed = 1;     // factor on rotation and tilt by a drag
-  bool invert_wheel = false;  // rolling away zooms out
+  double mouse_speed = 1;       // factor on rotation and tilt by a drag
+  bool invert_wheel = false;    // rolling away zooms out
+  bool throws = true;           // a drag that ends in motion goes on and dies off
+  bool tilt_on_arrival = true;  // the wheel tilts a camera that it brings down from straight above
+  VehicleOptions vehicle;       // of the mode drive
 };
 
-enum class MouseUse : std::uint8_t { kNone, kHold, kTilt };
+// Says what a drag does: nothing, holds the ground under the cursor (over the sky, the sky), tilts and turns about the
+// middle, looks around in place. In the modes fly, walk and drive every drag looks around.
+enum class MouseUse : std::uint8_t { kNone, kHold, kTilt, kLook };
 
 // Holds the state of a session. For one thread at a time.
 //
 // Typical usage, in each iteration of the event loop:
 //   session.resize(width, height);
-//   session.press(MouseUse::kHold, xy);              // on mouse events
+//   session.press(MouseUse::kHold, xy, event_s);     // on mouse events
 //   session.advance(dt_s, controls, head_angles);
 //   draw(session.view(), session.settings());
+//   if (session.is_going() || session.is_moving()) another frame follows without input
 class Session {
  public:
   static constexpr double kMinFov_deg = 1;
   static constexpr double kMaxFov_deg = 140;
+  static constexpr double kLeavesGround_m = 20;
 
   Session(std::shared_ptr<const paging::Surface> surface, const SessionOptions& options);
 
@@ -71,14 +81,28 @@ class Session {
   std::uint64_t changes() const { return changes_; }
 
   void resize(int width, int height);
+  // Sets the field of view. In a flight that is followed it holds instead of the flight's, until the flight is left.
   void set_fov(double fov_deg);
 
-  // Moves the camera to a pose at once and ends an automatic flight.
+  // Moves the camera to a pose at once and ends an automatic flight. In walk and drive, here and in go(), a pose is
+  // put on the ground, but one more than kLeavesGround_m above it changes the mode to orbit.
   void put(const mars::Pose& pose);
   // Begins an automatic flight to a pose.
   void go(const mars::Pose& pose);
   bool is_going() const { return going_.has_value(); }
-  void stop() { going_.reset(); }
+  // Returns true while the camera moves without input and without an automatic flight: after a throw, to the goal
+  // of the wheel, by the momentum of the walker or the vehicle. Frames must follow until it is false.
+  bool is_moving() const { return throw_.has_value() || wheel_.has_value() || mover_.is_moving(); }
+  // Ends all motion at the present pose.
+  void stop();
+
+  // Returns how keys, mouse and wheel move the camera, and the speed factor, slope and vehicle of the mode.
+  MotionMode mode() const { return mover_.mode(); }
+  const Mover& mover() const { return mover_; }
+  // Changes the mode and leaves a flight. Walk and drive fly down to the ground below the camera; the others begin
+  // with the present view.
+  void set_mode(MotionMode mode);
+
   // Flies to a place with the same height above ground, heading and pitch. From farther than a planet's radius,
   // flies down to half a radius.
   void go_to(mars::LonLat place);
@@ -90,8 +114,8 @@ class Session {
   void show_planet();
 
   // Gives access to the flight: edited here, played by follow(). While it is followed, the camera is on its
-  // platform, and drags and rotations add to its look without disturbing it. Moving by hand while it is paused
-  // leaves it.
+  // platform and has its field of view if it has one, and drags and rotations add to its look without disturbing
+  // it. Moving by hand while it is paused leaves it. Playing or scrubbing it changes walk and drive to orbit.
   FlightController& flights() { return flights_; }
   const FlightController& flights() const { return flights_; }
   FlightPlayer* player() { return flights_.player(shown_settings_.values().exaggeration); }
@@ -105,27 +129,52 @@ class Session {
   void advance(double dt_s, const Controls& controls, const mars::HeadAngles& tracker = {});
 
   // Handle mouse input. Positions are on the screen and refer to the image that is shown, which includes the
-  // head's direction. A press ends an automatic flight.
-  void press(MouseUse use, glm::dvec2 xy);
-  void drag(glm::dvec2 xy);
-  void release() { use_ = MouseUse::kNone; }
+  // head's direction. A press ends an automatic flight and all motion. Times are seconds of one clock of the caller;
+  // without them a drag throws nothing.
+  void press(MouseUse use, glm::dvec2 xy, std::optional<double> time_s = std::nullopt);
+  void drag(glm::dvec2 xy, std::optional<double> time_s = std::nullopt);
+  void release(std::optional<double> time_s = std::nullopt);
   MouseUse mouse_use() const { return use_; }
+  // Moves the goal of the distance by 1.35 a notch; advance() reaches it within WheelLimits::kTime_s. In a flight,
+  // walk and drive it changes the field of view, in fly the speed.
   void wheel(glm::dvec2 xy, double notches);
   void fly_towards(glm::dvec2 xy);  // double click
+  // Looks around in place by a motion of a cursor that is caught: to the right and down are positive.
+  void look_by(double dx_px, double dy_px);
 
  private:
+  // Holds the motion to the goal of the wheel, and the cursor.
+  struct Wheel {
+    WheelMotion motion;
+    glm::dvec2 xy{0, 0};
+  };
+  struct Throw {
+    Motion motion;
+    double time_s = 0;  // since the release
+  };
   mars::Pose seen() const;                               // the camera's, with the head
   mars::Pose platform_of(const mars::Pose& seen) const;  // its inverse
-  double wheel_factor(double notches) const;
+  mars::Pose seen_of(const mars::Pose& platform) const;
+  double signed_notches(double notches) const;
+  void zoom_view(double notches);
+  mars::Pose wheeled(const mars::Pose& from, glm::dvec2 xy, double factor);
+  bool go_on(double dt_s);  // the wheel's motion or a throw; returns true if there is one
+  void end_motion();        // of the throw and the wheel, at the wheel's goal
+  mars::Pose stand_at(const mars::Pose& pose);
+  void leave_ground();
+  void begin_going(const mars::Pose& goal);
+  void look_around(double yaw_deg, double pitch_deg);
   void go_rotated(double yaw_deg, double pitch_deg, double roll_deg);
   void take_flight_state(const mars::HeadAngles& tracker);
   void follow_settings();
+  void follow_fov();
 
   std::shared_ptr<const paging::Surface> surface_;
   core::Settings settings_;        // the user's own
   core::Settings shown_settings_;  // with a flight's
   FlightController flights_;
   bool follows_ = false;
+  double fov_deg_ = 50;  // the user's own; that of screen_ may be a flight's
   mars::HeadAngles tracker_;
   TerrainQuery ground_;
   Screen screen_;
@@ -134,13 +183,20 @@ class Session {
   std::vector<core::InterestRegion> interest_;
   double mouse_speed_ = 1;
   bool invert_wheel_ = false;
+  bool throws_ = true;
+  bool tilt_on_arrival_ = true;
+  Mover mover_;
+  mars::HeadAngles drive_look_;  // of the driver, relative to the vehicle
+  DragSamples samples_;
+  std::optional<Throw> throw_;
+  std::optional<Wheel> wheel_;
+  std::optional<double> arrival_pitch_deg_;  // that the wheel gave last
   std::uint64_t changes_ = 0;
   std::optional<FlyTo> going_;
   double gone_s_ = 0;
   MouseUse use_ = MouseUse::kNone;
-  mars::HeadAngles begun_look_;  // look offset in a flight, when the button was pressed
-  mars::Pose begun_;             // pose of the image, when the button was pressed
-  glm::dvec2 begun_xy_{0, 0};
+  mars::Pose begun_;                  // pose of the image, when the button was pressed
+  glm::dvec2 begun_xy_{0, 0};         // where the button was pressed; in kLook, where the cursor was last
   std::optional<glm::dvec3> held_m_;  // ground under the cursor, when the button was pressed
 };
 

@@ -114,13 +114,34 @@ std::string Bookmarks::put(Bookmark bookmark) {
   return "";
 }
 
-bool Bookmarks::remove(std::size_t index) {
-  for (auto line = lines_.begin(); line != lines_.end(); ++line) {
-    if (!line->bookmark || index-- > 0) continue;
-    lines_.erase(line);
-    return true;
+std::vector<Bookmarks::Line>::iterator Bookmarks::line_of(std::size_t index) {
+  return std::ranges::find_if(lines_, [&index](const Line& line) { return line.bookmark && index-- == 0; });
+}
+
+std::string Bookmarks::rename(std::size_t index, std::string_view name) {
+  const auto line = line_of(index);
+  if (line == lines_.end()) return "there is no bookmark " + std::to_string(index + 1);
+  Bookmark renamed = *line->bookmark;
+  renamed.name = std::string(trimmed(name));
+  if (!is_one_line(renamed.name)) return "a bookmark's name must be one line of text";
+  if (renamed.key == 0) {
+    if (renamed.name.empty()) return "a bookmark needs a key or a name";
+    const auto is_other = [&](const Line& other) {
+      return other.bookmark && &other != &*line && other.bookmark->key == 0 &&
+             other.bookmark->name == renamed.name;
+    };
+    if (std::ranges::any_of(lines_, is_other))
+      return "another bookmark is called " + base::quote_text(renamed.name);
   }
-  return false;
+  *line = {to_line(renamed), std::move(renamed)};
+  return "";
+}
+
+bool Bookmarks::remove(std::size_t index) {
+  const auto line = line_of(index);
+  if (line == lines_.end()) return false;
+  lines_.erase(line);
+  return true;
 }
 
 std::string Bookmarks::to_text() const {

@@ -50,6 +50,10 @@ class Bookmarks {
   // changes nothing.
   [[nodiscard]] std::string put(Bookmark bookmark);
 
+  // Renames the bookmark at a position of all(), which keeps its line. Returns what is wrong, or "": no other
+  // bookmark without a key may have the name of one without a key.
+  [[nodiscard]] std::string rename(std::size_t index, std::string_view name);
+
   // Removes the bookmark at a position of all(). Returns false if there is none.
   bool remove(std::size_t index);
 
@@ -64,6 +68,8 @@ class Bookmarks {
     std::string text;
     std::optional<Bookmark> bookmark;
   };
+  std::vector<Line>::iterator line_of(std::size_t index);
+
   std::vector<Line> lines_;
 };
 

@@ -11,6 +11,7 @@
 
 #include "vpe/base/number.h"
 #include "vpe/core/registry/former_names.h"
+#include "vpe/explore/files/toml_text.h"
 
 namespace vpe::explore {
 
@@ -22,33 +23,11 @@ constexpr core::SwitchWords kTomlSwitch{"false", "true", "true or false"};
 std::string_view table_of(std::string_view name) { return name.substr(0, name.find('.')); }
 std::string_view key_of(std::string_view name) { return name.substr(name.find('.') + 1); }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      constexpr std::string_view kDigits = "0123456789abcdef";
-      const auto code = static_cast<unsigned char>(c);
-      out += {'\\', 'u', '0', '0', kDigits[code >> 4U], kDigits[code & 15U]};
-    } else {
-      out += c;
-    }
-  }
-  out += '"';
-  try {
-    (void)toml::parse("a = " + out);
-  } catch (const toml::parse_error&) {
-    return "\"\"";
-  }
-  return out;
-}
-
 std::string value_text(const core::KeyInfo& key, const core::KeyValue& value) {
   const std::string text = core::print_value(key, value, kTomlSwitch);
   const bool is_word =
       std::holds_alternative<core::ChoiceKey>(key.type) || std::holds_alternative<core::TextKey>(key.type);
-  return is_word ? quoted(text) : text;
+  return is_word ? toml_string(text) : text;
 }
 
 // Returns NaN for a node that is not a number.

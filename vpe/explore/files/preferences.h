@@ -28,10 +28,12 @@ enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is
 
 // Choices of the user. preferences.cpp declares the key, the limits and the meaning of each.
 struct Preferences {
-  double mouse_speed = 1;     // factor on the angles of a drag
-  bool invert_wheel = false;  // rolling forward moves away from the ground
-  double fly_speed = 1;       // factor on the speed of motion, for all devices
-  double turn_speed = 1;      // factor on the speed of turning, for keys, gamepad and space mouse
+  double mouse_speed = 1;       // factor on the angles of a drag
+  bool invert_wheel = false;    // rolling forward moves away from the ground
+  bool throws = true;           // a drag of the ground that ends in motion goes on and dies off
+  bool tilt_on_arrival = true;  // the wheel tilts a camera that it brings down from straight above
+  double fly_speed = 1;         // factor on the speed of motion, for all devices
+  double turn_speed = 1;        // factor on the speed of turning, for keys, gamepad and space mouse
   // lod.frame_ms while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
   double draw_budget_ms = 40;
   double ui_scale = 0;                                 // size of letters and panels; 0: the display's own scale
@@ -54,7 +56,9 @@ struct LastSession {
   std::string planet;              // path of the planet as it was given; empty: none
   std::optional<mars::Pose> pose;  // of the camera
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
-  bool panels = true;  // map, panels and figures are shown
+  bool panels = true;    // map, panels and figures are shown
+  double side_px = 0;    // width of the side panel at scale 1; 0: the usual one
+  std::string overlays;  // settings of overlays that are on, one a line, as "overlay.scale=on"
 };
 
 // Return the keys of the two files.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vpe/base/number.h"
+#include "vpe/core/view.h"
 #include "vpe/explore/files/text_lines.h"
 
 namespace vpe::explore {
@@ -21,21 +22,44 @@ double angle(double angle_deg) {
   return in_full_circle(angle_deg) ? angle_deg : mars::normalize_lon_deg(angle_deg);
 }
 
+bool fits(const scripts::ViewState& view) {
+  using Limits = core::ViewLimits;
+  const auto side_fits = [](int side) { return side >= 1 && side <= Limits::kMaxSide_px; };
+  return (!view.fov_deg || (*view.fov_deg >= Limits::kMinFov_deg && *view.fov_deg <= Limits::kMaxFov_deg)) &&
+         (!view.size || (side_fits(view.size->width) && side_fits(view.size->height))) &&
+         (!view.eye_base_m ||
+          (*view.eye_base_m >= 0 && *view.eye_base_m <= scripts::FlightLimits::kMaxEyeBase_m));
+}
+
 bool fits(const SessionLog::Frame& f) {
   using Limits = scripts::FlightLimits;
   return f.time_s >= 0 && f.time_s <= Limits::kMaxTime_s && in_full_circle(f.pose.lon_deg) &&
          std::abs(f.pose.lat_deg) <= 90 && f.pose.alt_m >= Limits::kMinAlt_m &&
          f.pose.alt_m <= Limits::kMaxAlt_m && in_full_circle(f.pose.yaw_deg) &&
          std::abs(f.pose.pitch_deg) <= 90 && in_full_circle(f.pose.roll_deg) &&
-         in_full_circle(f.look.yaw_deg) && std::abs(f.look.pitch_deg) <= 90 && in_full_circle(f.look.roll_deg);
+         in_full_circle(f.look.yaw_deg) && std::abs(f.look.pitch_deg) <= 90 &&
+         in_full_circle(f.look.roll_deg) && fits(f.view);
 }
 
-bool same_place(const SessionLog::Frame& a, const SessionLog::Frame& b) {
+// Compares what playback interpolates.
+bool same_view(const SessionLog::Frame& a, const SessionLog::Frame& b) {
   const auto pose = [](const mars::Pose& p) {
     return std::array{p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg};
   };
   const auto look = [](const mars::HeadAngles& l) { return std::array{l.yaw_deg, l.pitch_deg, l.roll_deg}; };
-  return pose(a.pose) == pose(b.pose) && look(a.look) == look(b.look);
+  return pose(a.pose) == pose(b.pose) && look(a.look) == look(b.look) && a.view.fov_deg == b.view.fov_deg;
+}
+
+// Fills members without a value from the view before.
+void continue_view(scripts::ViewState& view, const scripts::ViewState& before) {
+  const auto take = [](auto& now, const auto& old) {
+    if (!now) now = old;
+  };
+  take(view.fov_deg, before.fov_deg);
+  take(view.size, before.size);
+  take(view.backend, before.backend);
+  take(view.eyes, before.eyes);
+  take(view.eye_base_m, before.eye_base_m);
 }
 
 double just_after(double time_s) { return std::nextafter(time_s, std::numeric_limits<double>::infinity()); }
@@ -44,7 +68,9 @@ double just_after(double time_s) { return std::nextafter(time_s, std::numeric_li
 
 SessionLog::SessionLog(const std::filesystem::path& path, const scripts::FlightView& view, double radius_m,
                        const SessionLogOptions& options)
-    : log_(path, view), radius_m_(radius_m), options_(options) {}
+    : log_(path, view, scripts::LineFile::Mode::kLive, scripts::FlightVersion::k1_1),
+      radius_m_(radius_m),
+      options_(options) {}
 
 // Flights add regions and cannot remove them, so a removed region is cancelled by its opposite.
 void SessionLog::update_regions(std::span<const core::InterestRegion> regions) {
@@ -69,7 +95,7 @@ void SessionLog::update_regions(std::span<const core::InterestRegion> regions) {
 }
 
 void SessionLog::write(const Frame& frame, const core::Settings& settings) {
-  log_.frame(frame.time_s, frame.pose, frame.look, settings, written_);
+  log_.frame(frame.time_s, frame.pose, frame.look, settings, written_, frame.view);
   last_ = frame;
   settings_ = settings;
 }
@@ -81,9 +107,12 @@ std::optional<double> SessionLog::frame(const Frame& seen, const core::Settings&
                         &frame.look.roll_deg}) {
     *value = angle(*value);
   }
-  if (last_) frame.time_s = std::max(frame.time_s, just_after(last_->time_s));
+  if (last_) {
+    frame.time_s = std::max(frame.time_s, just_after(last_->time_s));
+    continue_view(frame.view, last_->view);
+  }
   if (!fits(frame) || !(radius_m_ + frame.pose.alt_m > 0)) return std::nullopt;
-  if (last_ && frame.time_s - last_->time_s > options_.gap_s && !same_place(*last_, frame)) {
+  if (last_ && frame.time_s - last_->time_s > options_.gap_s && !same_view(*last_, frame)) {
     Frame hold = *last_;
     hold.time_s = std::max(frame.time_s - options_.lead_s, just_after(last_->time_s));
     write(hold, settings_);

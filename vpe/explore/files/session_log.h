@@ -1,10 +1,9 @@
 // A recording of a session as a flight, which `vpe fly` can render at any size.
 //
-// scripts::FlightLog writes poses, looks, settings and regions. This class adds: pauses, since a window draws
-// only when something changes and the camera must stand still meanwhile; removal of regions; jumps; and
-// entering and leaving panoramas. The latter are comments, which playback skips: the log stays a flight of
-// version 1, in which the camera stands at the hotspot and the head looks around. Zoom, backend, stereo and
-// window size are comments too, so playback does not repeat them.
+// scripts::FlightLog writes poses, looks, settings, regions and views (zoom, window size, backend, eyes). This class
+// adds: pauses, since a window draws only when something changes and the camera must stand still meanwhile; removal
+// of regions; jumps; and entering and leaving panoramas. The latter are comments, which playback skips: the log stays
+// a flight, in which the camera stands at the hotspot and the head looks around. Its version is 1.1.
 //
 //   # at 12.5 overlook in "Glen Torridon" "/home/u/panoramas/torridon.json"
 //   # at 40 overlook out
@@ -26,13 +25,13 @@ struct SessionLogOptions {
   double lead_s = 0.04;  // motion begins this long before the frame that ends a pause; less than gap_s
 };
 
-// Writes a log. The file is a valid flight at any moment after the first frame. Poses, looks and settings
+// Writes a log. The file is a valid flight at any moment after the first frame. Poses, looks, settings and views
 // replay bit by bit at the times of frames (scripts/path.h). Throws as scripts::LineFile. For one thread at a
 // time.
 //
 // Typical usage:
 //   SessionLog log("session.flight", view, radius_m);
-//   log.frame({time_s, session.pose(), session.look()}, session.settings());   // for each image
+//   log.frame({time_s, session.pose(), session.look(), view}, session.settings());   // for each image
 //   log.end(time_s);
 class SessionLog {
  public:
@@ -42,12 +41,13 @@ class SessionLog {
   struct Frame {
     double time_s = 0;
     mars::Pose pose;
-    mars::HeadAngles look;  // of the head on its platform, as the image was drawn
+    mars::HeadAngles look;         // of the head on its platform, as the image was drawn
+    scripts::ViewState view = {};  // likewise; members without a value are as before
   };
 
   // Records an image that was drawn. `regions` are those in effect. A time that is not after the previous one
   // counts as just after it. Returns the time written, or nullopt if the frame exceeds the flight format
-  // (numbers that are not finite, times after FlightLimits::kMaxTime_s, a pitch beyond 90 degrees) and is left
+  // (numbers that are not finite, times after FlightLimits::kMaxTime_s, a pitch beyond 90 degrees, a field of view of 0) and is left
   // out.
   std::optional<double> frame(const Frame& frame, const core::Settings& settings,
                               std::span<const core::InterestRegion> regions = {});
@@ -56,7 +56,7 @@ class SessionLog {
   void enter_overlook(double time_s, const std::string& hotspot, const std::filesystem::path& panorama);
   void leave_overlook(double time_s);
 
-  // Writes a comment, for example about another window size or backend.
+  // Writes a comment. Playback skips it.
   void note(double time_s, std::string_view text);
 
   // Ends the flight at a time, at least that of the last frame, and closes the file.

@@ -1,8 +1,10 @@
-#include "vpe/explore/flight_backup.h"
+#include "vpe/explore/files/unsaved_copy.h"
 
 #include <algorithm>
 #include <exception>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "vpe/base/temporary.h"
 #include "vpe/explore/files/user_files.h"
@@ -13,30 +15,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kBegin = "unsaved";
-constexpr std::string_view kExtension = ".flight";
+constexpr std::string_view kUnsavedBegin = "unsaved";
 
 }  // namespace
 
-FlightBackup::FlightBackup(fs::path folder) : folder_(std::move(folder)) {
-  if (!folder_.empty())
-    file_ = folder_ / (std::string(kBegin) + base::process_mark() + std::string(kExtension));
+UnsavedCopy::UnsavedCopy(fs::path folder, std::string extension, std::string noun)
+    : folder_(std::move(folder)), extension_(std::move(extension)), noun_(std::move(noun)) {
+  if (!folder_.empty()) file_ = folder_ / (std::string(kUnsavedBegin) + base::process_mark() + extension_);
 }
 
-std::string FlightBackup::update(const FlightEditor* editor) {
-  if (file_.empty()) return {};
-  const std::pair<std::uint64_t, std::uint64_t> now = editor == nullptr
-                                                          ? std::pair<std::uint64_t, std::uint64_t>{0, 0}
-                                                          : std::pair{editor->revision(), editor->saves()};
-  if (now == seen_) return {};
-  seen_ = now;
-  if (editor != nullptr && editor->is_changed()) {
+std::string UnsavedCopy::update(const State& state, bool is_unsaved,
+                                const std::function<std::string()>& to_text) {
+  if (file_.empty() || state == seen_) return {};
+  seen_ = state;
+  if (is_unsaved) {
     try {
-      write_user_file(file_, editor->to_text());
+      write_user_file(file_, to_text());
       exists_ = true;
       return {};
     } catch (const std::exception& e) {
-      return std::string("the unsaved flight has no copy: ") + e.what();
+      return "the unsaved " + noun_ + " has no copy: " + e.what();
     }
   }
   std::error_code ignored;
@@ -45,16 +43,17 @@ std::string FlightBackup::update(const FlightEditor* editor) {
   return {};
 }
 
-std::vector<fs::path> FlightBackup::abandoned() const {
+std::vector<fs::path> UnsavedCopy::abandoned() const {
   std::vector<std::pair<fs::file_time_type, fs::path>> found;
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     std::error_code failed;
-    if (!name.starts_with(kBegin) || !name.ends_with(kExtension)) continue;
+    if (!name.starts_with(kUnsavedBegin) || !name.ends_with(extension_)) continue;
     if (!fs::is_regular_file(entry->symlink_status(failed)) || failed) continue;
-    const std::string_view mark =
-        std::string_view(name).substr(kBegin.size(), name.size() - kBegin.size() - kExtension.size());
+    if (name.size() < kUnsavedBegin.size() + extension_.size()) continue;
+    const std::string_view mark = std::string_view(name).substr(
+        kUnsavedBegin.size(), name.size() - kUnsavedBegin.size() - extension_.size());
     if (!base::is_abandoned(entry->path(), mark)) continue;
     const fs::file_time_type written = fs::last_write_time(entry->path(), failed);
     if (!failed) found.emplace_back(written, entry->path());
@@ -66,7 +65,7 @@ std::vector<fs::path> FlightBackup::abandoned() const {
   return files;
 }
 
-void FlightBackup::adopt(const fs::path& copy) {
+void UnsavedCopy::adopt(const fs::path& copy) {
   fs::rename(copy, file_);
   exists_ = true;
 }
