@@ -24,12 +24,13 @@ const char* __lsan_default_suppressions() {
 // thread-local memory, which would be reported.
 const char* __lsan_default_options() { return "print_suppressions=0"; }
 
-// Returns what ThreadSanitizer leaves out: accesses by libraries that are not instrumented. Two accesses of the
-// program's own code are reported whoever calls it. One of them and one of a library, in memory that the
-// library was given, are not.
+// Returns what ThreadSanitizer leaves out: accesses by libraries that are not instrumented, and the order in which
+// they take their own locks. Two accesses of the program's own code are reported whoever calls it. One of them and
+// one of a library, in memory that the library was given, are not.
 const char* __tsan_default_suppressions() {
   return "race:_dri.so\nrace:libgallium\nrace:libEGL\nrace:libOSMesa\nrace:libLLVM\nrace:libfontconfig\n"
-         "race:libgdal\nrace:libproj\nrace:libsqlite3\nrace:libcurl\nrace:libcairo\nrace:libpango\n";
+         "race:libgdal\nrace:libproj\nrace:libsqlite3\nrace:libcurl\nrace:libcairo\nrace:libpango\n"
+         "deadlock:_dri.so\ndeadlock:libgallium\ndeadlock:libEGL\ndeadlock:libgdal\n";
 }
 
 }  // extern "C"

@@ -1,11 +1,14 @@
 // The cache of planets that commands build from rasters.
+#include <fcntl.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "tests/app/support/app_fixture.h"
 #include "tests/support/http_server.h"
@@ -137,6 +140,27 @@ TEST_F(Cache, ThatMayNotBeWrittenToIsRead) {
     expect_failure({"query", "other.tif", "30,10"}, 1, {".lock", "cannot open", "XDG_CACHE_HOME", "vpe build"});
   }
   fs::permissions(dir_ / "cache" / "vpe", fs::perms::owner_all);
+}
+
+TEST_F(Cache, AWaitForAnotherBuildIsTold) {
+  write_flat(dir_ / "flat.tif", 700);
+  EXPECT_NEAR(height("flat.tif"), 700, 5);
+  fs::path lock;
+  for (const auto& entry : fs::recursive_directory_iterator(dir_.path()))
+    if (entry.path().extension() == ".lock") lock = entry.path();
+  ASSERT_FALSE(lock.empty());
+  for (const auto& entry : fs::directory_iterator(lock.parent_path()))
+    if (entry.path().extension() == ".vpe") fs::remove(entry.path());
+  const int file = ::open(lock.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(file, 0);
+  ASSERT_EQ(::flock(file, LOCK_EX), 0);
+  std::jthread other([file] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ::close(file);
+  });
+  const Result result = run(command_for({"query", "flat.tif", "30,10", "--json"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("another vpe is building"), std::string::npos) << result.err;
 }
 
 // GeoPackages are SQLite files as planets are.

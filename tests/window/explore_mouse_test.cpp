@@ -85,6 +85,50 @@ TEST_F(ExploreMouseTest, ARightDragTiltsAboutTheMiddle) {
   EXPECT_GT(std::abs(window_->session().pose().yaw_deg - before.yaw_deg), 1);
 }
 
+TEST_F(ExploreMouseTest, AFlickGoesOnAndComesToRest) {
+  open();
+  window_->session().put({20, 10, 400'000, 0, -90, 0});
+  move(600, 250);
+  settle();
+  robot_->press();
+  iterate(1);
+  int left = 0;
+  int top = 0;
+  glfwGetWindowPos(window_->display().handle(), &left, &top);
+  for (int n = 1; n <= 8; ++n) {
+    robot_->move(600 + 25 * n + left, 250 + top);
+    iterate(1);
+  }
+  robot_->release();
+  for (int n = 0; n < 100 && window_->session().mouse_use() != explore::MouseUse::kNone; ++n) iterate(1);
+  EXPECT_TRUE(window_->session().is_moving());
+  EXPECT_FALSE(window_->is_at_rest());
+  const double lon_deg = window_->session().pose().lon_deg;
+  settle();
+  EXPECT_LT(window_->session().pose().lon_deg, lon_deg) << "on to the west";
+  EXPECT_FALSE(window_->session().is_moving());
+  EXPECT_TRUE(window_->shows_final_image());
+}
+
+TEST_F(ExploreMouseTest, ACtrlDragLooksAroundInPlace) {
+  open();
+  window_->session().put({20, 10, 400'000, 0, -60, 0});
+  move(600, 250);
+  settle();
+  const mars::Pose before = window_->session().pose();
+  robot_->key_down("Control_L");
+  robot_->press();
+  iterate(2);
+  EXPECT_EQ(window_->session().mouse_use(), explore::MouseUse::kLook);
+  for (int n = 1; n <= 8; ++n) move(600 - 10 * n, 250);
+  robot_->release();
+  robot_->key_up("Control_L");
+  settle();
+  EXPECT_NEAR(window_->session().pose().lon_deg, before.lon_deg, 1e-9);
+  EXPECT_NEAR(window_->session().pose().alt_m, before.alt_m, 1e-3);
+  EXPECT_GT(window_->session().pose().yaw_deg, before.yaw_deg + 2);
+}
+
 TEST_F(ExploreMouseTest, ADoubleClickFliesThere) {
   open();
   settle();

@@ -1,5 +1,5 @@
 // Tests of the measuring panel without a window: Dear ImGui needs no OpenGL until a frame is shown.
-#include "vpe/window/measure_panel.h"
+#include "vpe/window/panels/measure_panel.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -13,7 +13,7 @@
 
 #include "tests/explore/terrain_fixture.h"
 #include "vpe/explore/measure/profile_plot.h"
-#include "vpe/window/profile_plot_view.h"
+#include "vpe/window/panels/profile_plot_view.h"
 
 namespace vpe::window {
 namespace {
@@ -31,7 +31,7 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
-    io.DisplaySize = {340, 2000};
+    io.DisplaySize = {1040, 2000};
     io.ClipboardUserData = &logged_;
     io.SetClipboardTextFn = [](void* to, const char* text) { *static_cast<std::string*>(to) = text; };
     unsigned char* pixels = nullptr;
@@ -61,6 +61,16 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     MeasureActions actions = panel_->draw(*session_, under_cursor, widgets_);
     ImGui::LogFinish();
     ImGui::End();
+    const std::string panel_text = logged_;
+    logged_.clear();
+    ImGui::SetNextWindowPos({400, 0});
+    ImGui::SetNextWindowSize({600, static_cast<float>(MeasurePanel::kStrip_px)});
+    ImGui::Begin("profile strip", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::LogToClipboard();
+    if (const MeasureActions saved = panel_->draw_profile(widgets_); !saved.message.empty()) actions = saved;
+    ImGui::LogFinish();
+    ImGui::End();
+    logged_ = panel_text + logged_;
     if (actions.go_to || !actions.message.empty()) actions_ = actions;
     ImGui::Render();
     return logged_;

@@ -10,7 +10,7 @@
 
 #include "tests/support/support.h"
 #include "tests/window/robot.h"
-#include "vpe/window/widgets.h"
+#include "vpe/window/ui/widgets.h"
 
 namespace vpe::window {
 

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -15,15 +16,20 @@
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #ifdef VPE_HAS_WINDOW
+#include "mars/embedded/data_files.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/cli/shell_word.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/window_painter.h"
+#include "vpe/core/appearance/gazetteer.h"
+#include "vpe/explore/drawing/project.h"
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/files/preferences.h"
 #include "vpe/gl/context.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/panels/overlay_bar.h"
 #endif
 
 namespace vpe::app {
@@ -41,7 +47,9 @@ struct ExploreArguments {
   std::string flight;
   std::string hotspots;
   bool print_settings = false;
-  bool names_backend = false;  // else that of the last session
+  bool restores_overlays = true;  // those of the last session
+  bool names_backend = false;     // else that of the last session
+  bool names_fov = false;         // else that of a project
   RenderOptions image;
 };
 
@@ -56,6 +64,85 @@ bool sets(const RenderOptions& options, const std::string& key) {
 // Returns the planet's path as a session file records it: absolute, or empty for the embedded Mars.
 std::string recorded_path(const std::string& planet) {
   return planet.empty() ? planet : std::filesystem::absolute(planet).lexically_normal().string();
+}
+
+// Draws over images what the last session drew, except what the command line decides.
+void restore_overlays(const std::string& overlays, const RenderOptions& options, core::Settings& settings) {
+  std::istringstream lines(overlays);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t sign = line.find('=');
+    const std::string key = line.substr(0, sign);
+    // A file of names may be gone by now.
+    if (sign != std::string::npos && key.starts_with("overlay.") && !sets(options, key))
+      (void)settings.set(key, line.substr(sign + 1));
+  }
+}
+
+// Names places of Mars in the search box and over images.
+void add_places(const paging::PlanetMeta& meta, window::ExploreSetup& setup) {
+  if (meta.body != "Mars") return;
+  setup.places_file = mars::find_data_file(mars::kPlacesFile);
+  if (!setup.places_file.empty())
+    setup.places = vpe::explore::sights_first(core::read_gazetteer(setup.places_file));
+}
+
+// Returns a command that draws the view of a session.
+std::string command_line(const std::string& planet, const vpe::explore::Session& session) {
+  const mars::Pose& p = session.pose();
+  std::string pose;
+  for (const double value : {p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg})
+    pose += (pose.empty() ? "" : ",") + base::format_number(value);
+  std::string text = "vpe render " + (planet.empty() ? "" : shell_word(planet) + " ") + "--pose " + pose +
+                     " --fov " + base::format_number(session.screen().fov_deg) + " --size " +
+                     std::to_string(session.screen().width) + "x" + std::to_string(session.screen().height);
+  const core::Settings defaults;
+  for (const core::SettingInfo& info : core::Settings::list()) {
+    const std::string value = session.settings().get(info.key).value_or("");
+    if (value != defaults.get(info.key).value_or("") && info.key != "lod.frame_ms")
+      text += " --set " + shell_word(std::string(info.key) + "=" + value);
+  }
+  return text + " -o view.png";
+}
+
+// Holds the project that is opened first.
+struct OpenedProject {
+  std::filesystem::path file;
+  vpe::explore::Project project;
+};
+
+// Reads the project that is given in place of a planet, and fills in what the command line does not say. Throws
+// for a bad project.
+std::optional<OpenedProject> open_project(ExploreArguments& arguments) {
+  if (!vpe::explore::is_project_file(arguments.planet)) return std::nullopt;
+  OpenedProject opened{std::filesystem::absolute(arguments.planet), {}};
+  vpe::explore::ParsedProject parsed = vpe::explore::load_project(arguments.planet);
+  std::string wrong;
+  for (const std::string& error : parsed.errors) wrong += (wrong.empty() ? "" : "\n     ") + error;
+  if (!wrong.empty()) throw std::runtime_error(wrong);
+  opened.project = std::move(*parsed.project);
+  arguments.planet = opened.project.planet.string();
+  arguments.restores_overlays = false;
+  if (arguments.flight.empty()) {
+    arguments.flight = opened.project.flight.string();
+  } else {
+    opened.project.flight_text.reset();
+  }
+  if (arguments.hotspots.empty()) arguments.hotspots = opened.project.hotspots.string();
+  if (!arguments.names_fov) arguments.fov_deg = opened.project.fov_deg;
+  std::vector<std::string> settings;
+  for (const auto& [key, value] : opened.project.settings) settings.push_back(key + "=" + value);
+  arguments.image.set.insert(arguments.image.set.begin(), settings.begin(), settings.end());
+  return opened;
+}
+
+void apply(OpenedProject opened, const ExploreArguments& arguments, window::ExploreSetup& setup) {
+  vpe::explore::Project& project = opened.project;
+  if (!setup.session.start) setup.session.start = project.pose;
+  if (!arguments.names_backend) setup.drawn_by = project.drawn_by;
+  setup.panels = project.panels;
+  setup.session.interest.insert(setup.session.interest.begin(), project.regions.begin(), project.regions.end());
+  setup.project_file = opened.file;
+  setup.project = std::move(project);
 }
 
 // Returns everything except the planet. Throws for wrong usage before any work.
@@ -90,8 +177,12 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   };
   setup.session.mouse_speed = preferences.mouse_speed;
   setup.session.invert_wheel = preferences.invert_wheel;
+  setup.session.throws = preferences.throws;
+  setup.session.tilt_on_arrival = preferences.tilt_on_arrival;
   setup.panels = last.panels;
+  setup.side_px = last.side_px;
   setup.session.settings = make_settings(arguments.image);
+  if (arguments.restores_overlays) restore_overlays(last.overlays, arguments.image, setup.session.settings);
   setup.session.interest = parse_interest(arguments.image);
   setup.session.fov_deg = arguments.fov_deg;
   if (!sets(arguments.image, "lod.frame_ms")) {
@@ -119,6 +210,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.suits_rays = [](const core::DrawRequest& request) {
     return suits_rays(for_window_rays(request, true));
   };
+  setup.as_drawn = as_drawn;
   setup.sun = sun_for;
   setup.threads = common.threads;
   setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
@@ -136,6 +228,10 @@ window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> plane
 std::string keep_session(const window::ExploreWindow& shown, const std::string& planet,
                          const std::filesystem::path& file, vpe::explore::LastSession& last) {
   last.panels = shown.state().panels;
+  last.side_px = shown.state().side_px;
+  last.overlays.clear();
+  for (const std::string& overlay : window::overlays_on(shown.session().settings()))
+    last.overlays += (last.overlays.empty() ? "" : "\n") + overlay;
   last.planet = planet;
   last.pose = shown.session().pose();
   last.drawn_by = shown.state().drawn_by;
@@ -145,13 +241,15 @@ std::string keep_session(const window::ExploreWindow& shown, const std::string& 
   return file.empty() ? "" : vpe::explore::save(last, file);
 }
 
-void explore(const ExploreArguments& arguments, const Common& common) {
+void explore(const ExploreArguments& given, const Common& common) {
   const vpe::explore::ExploreFiles files = vpe::explore::explore_files();
   const vpe::explore::Preferences preferences = vpe::explore::read_preferences(files.preferences);
-  if (arguments.print_settings) {
+  if (given.print_settings) {
     std::fputs(vpe::explore::to_text(preferences).c_str(), stdout);
     return;
   }
+  ExploreArguments arguments = given;
+  std::optional<OpenedProject> project = open_project(arguments);
   vpe::explore::LastSession last;
   try {
     last = vpe::explore::read_session(files.session);
@@ -175,6 +273,9 @@ void explore(const ExploreArguments& arguments, const Common& common) {
       start.lat_deg =
           planetocentric({start.lon_deg, start.lat_deg}, here.latitude, planet->meta(), common.quiet).lat_deg;
     }
+    if (project) apply(*std::exchange(project, std::nullopt), here, setup);
+    setup.planet_file = file;
+    if (!here.hotspots.empty()) setup.hotspots_file = std::filesystem::absolute(here.hotspots);
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
     is_first = false;
@@ -186,7 +287,11 @@ void explore(const ExploreArguments& arguments, const Common& common) {
         return shown_planet(std::move(complete), common);
       };
     }
-    setup.display.title = "vpe - " + planet->meta().body;
+    add_places(planet->meta(), setup);
+    setup.greets = here.pose.empty() && here.flight.empty();
+    setup.command_line = [&file](const vpe::explore::Session& session) { return command_line(file, session); };
+    setup.display.title =
+        "vpe - " + planet->meta().body + (planet->meta().illustration ? " (finest ground is synthetic)" : "");
     const auto keep = [&files, &last, &file](const window::ExploreWindow& shown) {
       return keep_session(shown, file, files.session, last);
     };
@@ -195,13 +300,15 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     shown.run();
     if (const std::string message = shown.exit_message(); !message.empty())
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
+    if (const std::string message = shown.drawings_message(); !message.empty())
+      std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     // Flights, logs, hotspots and regions belong to one planet; the appearance stays for the next.
     here.pose = here.log = here.flight = here.hotspots = "";
     here.image.interest.clear();
     here.names_backend = false;
     here.size = "";
-    here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
+    here.fov_deg = shown.session().screen().fov_deg;
     settings = shown.session().settings();
     const std::string error = keep(shown);
     if (!error.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", error.c_str());
@@ -225,7 +332,8 @@ void explore(const ExploreArguments&, const Common&) {
 void add_explore(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<ExploreArguments>();
   CLI::App* command = add_command(program, "explore", "Fly over a planet in a window", common, false);
-  command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
+  command->add_option("PLANET", arguments->planet,
+                      "Planet file, DEM, or project of this command, *.vpeproj (default: the embedded Mars)");
   command->add_option(
       "--pose", arguments->pose,
       "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere "
@@ -239,17 +347,20 @@ void add_explore(CLI::App& program, Common& common) {
       ->check(number_within(0.5, 4));
   command->add_option("--flight", arguments->flight, "Flight file to play and edit; edits are saved to it");
   command->add_option("--hotspots", arguments->hotspots, "File of hotspots: places with a panorama to open");
-  command->add_option("--log", arguments->log,
-                      "Record the session as a flight; zoom, backend, stereo and window size as comments only");
+  command->add_option(
+      "--log", arguments->log,
+      "Record the session as a flight, with zoom, backend, stereo and window size; panoramas as comments");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and exit");
   add_render_options(*command, arguments->image);
   add_examples(*command,
                {{"the whole planet", "vpe explore mars.vpe"},
                 {"begin at a place, in ray casting, with shadows",
                  "vpe explore mars.vpe --pose -59.2,-13.7,8000,90,-10 --backend ray --set shadows=on"},
+                {"continue a project that Ctrl+S has saved in the window", "vpe explore work.vpeproj"},
                 {"record the session as a flight", "vpe explore mars.vpe --log session.flight"}});
   command->callback([arguments, command, &common] {
     arguments->names_backend = command->count("--backend") > 0;
+    arguments->names_fov = command->count("--fov") > 0;
     explore(*arguments, common);
   });
 }

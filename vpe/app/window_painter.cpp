@@ -64,10 +64,16 @@ core::DrawRequest for_window_rays(core::DrawRequest request, bool within_toleran
   return request;
 }
 
+window::ImageRequest as_drawn(window::ImageRequest request) {
+  if (!voxel::refused_control(request.draw).empty()) request.backend = core::Backend::kPolygon;
+  if (request.backend == core::Backend::kRay)
+    request.draw = for_window_rays(std::move(request.draw), request.is_auto);
+  return request;
+}
+
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
-  // A limit of triangles is kept by triangles, whatever is chosen.
-  const core::Backend backend =
-      voxel::refused_control(request.draw).empty() ? request.backend : core::Backend::kPolygon;
+  window::ImageRequest as_asked = as_drawn(request);
+  const core::Backend backend = as_asked.backend;
   const bool changes = backend_ && backend_ != backend;
   if (backend_ != backend) {
     renderer_.reset();
@@ -77,8 +83,8 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     renderer_ = make_renderer(options, common_, planet_);
     backend_ = backend;
   }
-  core::DrawRequest draw_request = request.draw;
-  if (backend == core::Backend::kRay) draw_request = for_window_rays(std::move(draw_request), request.is_auto);
+  core::DrawRequest draw_request = std::move(as_asked.draw);
+  draw_request.paging.change_wait_s = kChange_s;
   if (changes) {
     draw_request.paging.wait = true;
     draw_request.paging.timeout_s = kChange_s;

@@ -8,7 +8,7 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/view_palette.h"
-#include "vpe/window/painter.h"
+#include "vpe/window/workers/painter.h"
 
 namespace vpe::app {
 
@@ -16,9 +16,13 @@ namespace vpe::app {
 // control is asked for, or `within_tolerance`, it becomes multires with cells of the tolerance. Pure.
 core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance);
 
+// Returns a request as WindowPainter draws it: a limit of triangles is kept by triangles, whatever is chosen, and rays
+// have the mode of for_window_rays(). Pure.
+window::ImageRequest as_drawn(window::ImageRequest request);
+
 // Draws the window's image requests. Holds one backend at a time to keep within --memory: after a change of the
-// backend, nothing is loaded, and the first image waits for its tiles for kChange_s at most, so that the window
-// shows the former image until then. One thread at a time.
+// backend, of exaggeration or of the kind of shading, no loaded tile fits, and the first image waits for its tiles for
+// kChange_s at most, so that the window shows the former image until then. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
   WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common);

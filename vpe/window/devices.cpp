@@ -112,7 +112,7 @@ bool Devices::polls(double time_s) const {
   return has_pad_ || cap_moves_ || receiver_ != nullptr || tracker_.is_moving(time_s);
 }
 
-DeviceReading Devices::read(double time_s, bool typing) {
+DeviceReading Devices::read(double time_s, bool typing, explore::MotionMode mode) {
   DeviceReading reading;
   std::vector<explore::Controls> controls;
   const auto add = [&reading](const std::vector<explore::Action>& actions) {
@@ -120,8 +120,8 @@ DeviceReading Devices::read(double time_s, bool typing) {
   };
   const std::vector<explore::KeyPress> presses = std::exchange(presses_, {});
   if (!typing) {
-    controls.push_back(explore::keyboard_controls(held_, with_));
-    add(explore::keyboard_actions(presses));
+    controls.push_back(explore::keyboard_controls(held_, with_, mode));
+    add(explore::keyboard_actions(presses, mode));
   }
   if (preferences_.use_gamepad) {
     const std::optional<explore::PadState> state = sources_.pad();

@@ -16,7 +16,7 @@
 #include "vpe/explore/input/keyboard.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
-#include "vpe/window/display.h"
+#include "vpe/window/ui/display.h"
 
 namespace vpe::window {
 
@@ -47,7 +47,8 @@ class Devices {
   void lose_keyboard() { held_.clear(); }
 
   // Reads all devices. typing: a text field has the focus, so keys are ignored. Times are seconds of one clock.
-  DeviceReading read(double time_s, bool typing);
+  // Keys have their meaning in `mode`.
+  DeviceReading read(double time_s, bool typing, explore::MotionMode mode = explore::MotionMode::kOrbit);
 
   // Returns true if a device must be polled because it sends no events.
   bool polls(double time_s) const;

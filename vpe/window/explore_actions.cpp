@@ -1,7 +1,11 @@
 // Actions of the explore window, and the files that it writes.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 #include <array>
 
+#include "mars/geodesy/place_text.h"
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
 #include "vpe/explore/files/user_files.h"
@@ -107,6 +111,16 @@ void ExploreWindow::save_image() {
   }
 }
 
+std::string ExploreWindow::copy_view() {
+  const mars::LonLat place =
+      under_cursor_.value_or(mars::LonLat{session_.pose().lon_deg, session_.pose().lat_deg});
+  std::string text = mars::place_text(place);
+  if (setup_.command_line) text += "\n" + setup_.command_line(session_);
+  glfwSetClipboardString(display_.handle(), text.c_str());
+  show_message("copied: " + mars::place_text(place));
+  return {};
+}
+
 void ExploreWindow::set_recording(bool on, const fs::path& file) {
   const std::string error =
       on ? recorder_.start(file.empty() ? new_file(setup_.folder, "log-", ".flight") : file, session_, now_s())
@@ -134,9 +148,7 @@ std::string ExploreWindow::exit_message() {
 
 void ExploreWindow::restore_flight(const fs::path& copy) {
   try {
-    const std::optional<std::string> text = explore::read_user_file(copy);
-    if (!text) throw std::runtime_error(copy.string() + ": the copy is gone");
-    const scripts::ParsedFlight parsed = scripts::parse_flight(*text, copy.string());
+    const scripts::ParsedFlight parsed = read_flight_file(copy);
     if (!parsed.flight) throw std::runtime_error(scripts::to_string(parsed.errors.front()));
     if (const std::string error = session_.flights().load(*parsed.flight); !error.empty())
       throw std::runtime_error(error);
@@ -165,6 +177,8 @@ std::string ExploreWindow::act(const explore::Action& action) {
     if (guide_.inside()->act(action)) return {};
     if (!std::ranges::count(kInside, action.kind)) return "press Esc to leave the panorama first";
   }
+  if (has_project() && (action.kind == Kind::kGoToBookmark || action.kind == Kind::kSetBookmark))
+    return act_on_project_bookmark(action);
   switch (action.kind) {
     case Kind::kNorthUp: session_.north_up(); return {};
     case Kind::kLookDown: session_.look_down(false); return {};
@@ -174,16 +188,27 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kViewBack: return go(history_.back());
     case Kind::kViewForward: return go(history_.forward());
     case Kind::kGoToBookmark: return reply(go_to_bookmark(session_, setup_.bookmarks, action.number));
-    case Kind::kSetBookmark: return reply(set_bookmark(session_, setup_.bookmarks, action.number));
+    case Kind::kSetBookmark:
+      places_.reload();
+      return reply(set_bookmark(session_, setup_.bookmarks, action.number));
     case Kind::kZoomIn: session_.set_fov(session_.screen().fov_deg / kZoomStep); return {};
     case Kind::kZoomOut: session_.set_fov(session_.screen().fov_deg * kZoomStep); return {};
     case Kind::kZoomReset: session_.set_fov(first_fov_deg_); return {};
+    case Kind::kNextMode:
+    case Kind::kPreviousMode: {
+      const explore::MotionMode mode = action.kind == Kind::kNextMode ? explore::next_mode(session_.mode())
+                                                                      : explore::previous_mode(session_.mode());
+      session_.set_mode(mode);
+      show_message(std::string(explore::to_string(mode)) + ": " + std::string(explore::meaning(mode)));
+      return {};
+    }
     case Kind::kPlayPause: {
       const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
       return session_.follow(flight == nullptr || !flight->is_playing());
     }
     case Kind::kRecord: set_recording(!recorder_.is_recording()); return {};
-    case Kind::kPlaceWaypoint: return session_.flights().append(session_.pose(), flight_.ground_speed_m_s());
+    case Kind::kPlaceWaypoint:
+      return session_.flights().append(session_.pose(), flight_.ground_speed_m_s(session_));
     case Kind::kLeave:
       state_.help = false;
       if (guide_.inside() != nullptr) {
@@ -202,6 +227,12 @@ std::string ExploreWindow::act(const explore::Action& action) {
       else
         saves_image_ = true;
       return {};
+    case Kind::kSearch:
+      state_.panels = true;
+      state_.side_is_open = true;
+      search_.focus();
+      return {};
+    case Kind::kCopy: return copy_view();
     case Kind::kHelp: state_.help = !state_.help; return {};
     case Kind::kMeasure:
       if (!under_cursor_) return "there is no ground under the cursor";

@@ -6,28 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "lod/tree/posts.h"
 #include "vpe/explore/input/keyboard.h"
+#include "vpe/explore/places/arrival.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
-#include "vpe/window/settings_panels.h"
+#include "vpe/window/panels/overlay_bar.h"
+#include "vpe/window/panels/settings_panels.h"
 
 namespace vpe::window {
 
 namespace {
 
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-// Draws one line. Text that is too long is shown as a tooltip too.
-void status_line(const std::string& text, const ImVec4& colour) {
-  std::string first = text;
-  std::ranges::replace(first, '\n', ' ');
-  ImGui::TextColored(colour, "%s", first.c_str());
-  if (ImGui::IsItemHovered() && ImGui::GetItemRectSize().x > ImGui::GetContentRegionAvail().x)
-    ImGui::SetTooltip("%s", text.c_str());
-}
+const ImVec4 kKeyColour{1, 0.84F, 0.55F, 1};
 
 void draw_control_panel(explore::Session& session, WindowState& state, Widgets& widgets) {
   ImGui::BeginChild("control");
@@ -85,13 +75,18 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
   ImGui::EndChild();
 }
 
-void draw_explore_help(const ViewArea& area) {
+void draw_explore_help(const ViewArea& area, bool& is_open, Widgets& widgets) {
   static constexpr const char* kMouse[][2] = {
       {"left drag", "move the ground with the cursor; in a flight: look around"},
       {"wheel", "zoom to the ground under the cursor; in a flight: field of view"},
+      {"Ctrl + left drag", "look around in place; in fly and walk any left drag does"},
       {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
       {"double click", "fly there"},
-      {"on the map", "click: fly there; Ctrl + click: add a waypoint; Shift + drag: add a region of interest"},
+      {"with a tool of Draw", "click: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
+      {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project"},
+      {"on the map",
+       "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "
+       "region of interest"},
   };
   ImGui::SetNextWindowPos(at(area.x + area.width / 2, area.height / 2), ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints(at(0, 0), at(area.width, area.height));
@@ -100,10 +95,11 @@ void draw_explore_help(const ViewArea& area) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar);
   const auto row = [](const char* what, const char* does) {
     ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", what);
+    coloured_line(kKeyColour, what);
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(does);
   };
+  if (widgets.button("Close help", "Esc or F1")) is_open = false;
   if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const auto& line : kMouse) row(line[0], line[1]);
     ImGui::EndTable();
@@ -121,17 +117,18 @@ void draw_explore_help(const ViewArea& area) {
   ImGui::End();
 }
 
-// Draws a message over the lower left of a view whose panels are hidden.
+// Draws a message over the middle of a view's lower edge, whole.
 void draw_note(const ViewArea& area, const std::string& text, bool is_error, double scale) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const double margin = 10 * scale;
   const double most = std::max(40.0, area.width - 4 * margin);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, static_cast<float>(most));
+  const double wide = static_cast<double>(size.x);
+  const double left = area.x + (area.width - wide) / 2;
   const double top = area.y + area.height - margin - static_cast<double>(size.y);
-  list.AddRectFilled(at(area.x + margin, top - margin),
-                     at(area.x + 3 * margin + static_cast<double>(size.x), top + static_cast<double>(size.y)),
-                     IM_COL32(0, 0, 0, 170), 4);
-  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(area.x + 2 * margin, top - margin / 2),
+  list.AddRectFilled(at(left - margin, top - margin),
+                     at(left + wide + margin, top + static_cast<double>(size.y)), IM_COL32(0, 0, 0, 170), 4);
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(left, top - margin / 2),
                ImGui::ColorConvertFloat4ToU32(is_error ? kErrorColour : kSuccessColour), text.c_str(), nullptr,
                static_cast<float>(most));
 }
@@ -152,11 +149,15 @@ void ExploreWindow::draw_frame() {
   widgets_.begin_frame();
   find_cursor();
   if (state_.large_map) {
+    if (large_map_ == nullptr)
+      large_map_ = std::make_unique<MapPanel>(setup_.planet, setup_.threads, [] { Display::wake(); });
     ImGui::SetNextWindowPos(at(view_area_.x, view_area_.y));
     ImGui::SetNextWindowSize(at(view_area_.width, view_area_.height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(0, 0));
     ImGui::Begin("large map", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
-    draw_map(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
+    widgets_.group("large");
+    draw_map(*large_map_, static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
+    widgets_.group("");
     ImGui::End();
     ImGui::PopStyleVar();
   } else if (guide_.inside() != nullptr) {
@@ -165,27 +166,83 @@ void ExploreWindow::draw_frame() {
     draw_view();
   }
   if (state_.panels) {
-    draw_side();
+    draw_over_view();
+    if (layout_.side.width > 0) draw_side();
+    draw_side_handle();
     draw_status();
-  } else if (!state_.message.empty()) {
-    draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
   }
+  if (!state_.message.empty()) draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
   if (recorder_.is_recording()) draw_recording_sign(view_area_, display_.scale());
-  if (state_.help) draw_explore_help(view_area_);
+  if (state_.help) draw_explore_help(view_area_, state_.help, widgets_);
   display_.end_frame(std::exchange(capture_, nullptr));
+  tip_at_s_ = widgets_.tip_due_s() ? std::optional(now_s() + *widgets_.tip_due_s()) : std::nullopt;
   if (Display::has_input_left()) frames_due_ = std::max(frames_due_, kFramesAfterChange);
   ++frames_;
 }
 
+// Draws the windows that lie over the view: switches of overlays, the profile, the first hints.
+void ExploreWindow::draw_over_view() {
+  if (state_.large_map || guide_.inside() != nullptr) return;
+  const double scale = display_.scale();
+  if (const std::string error = draw_overlay_bar(view_area_, scale, session_, setup_.places_file, widgets_);
+      !error.empty())
+    show_message(error, true);
+  draw_modes();
+  if (measure_.points().size() >= 2 && view_area_.height > 2 * MeasurePanel::kStrip_px * scale) {
+    ImGui::SetNextWindowPos(
+        at(view_area_.x, view_area_.y + view_area_.height - MeasurePanel::kStrip_px * scale));
+    ImGui::SetNextWindowSize(at(view_area_.width, MeasurePanel::kStrip_px * scale));
+    ImGui::SetNextWindowBgAlpha(0.85F);
+    ImGui::Begin("profile strip", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+    const MeasureActions actions = measure_.draw_profile(widgets_);
+    if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+    ImGui::End();
+  } else if (!layout_.is_narrow || layout_.side.width <= 0) {
+    if (const auto place = welcome_.draw(view_area_, scale, widgets_)) fly_to(*place);
+  }
+}
+
+void ExploreWindow::draw_modes() {
+  const double scale = display_.scale();
+  const double beside = layout_.is_narrow ? layout_.side.width + 30 * scale : view_area_.x + 6 * scale;
+  ImGui::SetNextWindowPos(at(beside, view_area_.y + 6 * scale));
+  ImGui::SetNextWindowBgAlpha(0.55F);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(4 * scale, 4 * scale));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, at(3 * scale, 3 * scale));
+  ImGui::Begin("modes", nullptr,
+               kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  for (const explore::MotionMode mode : explore::motion_modes()) {
+    if (mode != explore::motion_modes().front()) ImGui::SameLine();
+    bool is_on = session_.mode() == mode;
+    const std::string name(explore::to_string(mode));
+    if (widgets_.toggle(name.c_str(), is_on, (std::string(explore::meaning(mode)) + " (F)").c_str()) && is_on) {
+      session_.set_mode(mode);
+      show_message(name + ": " + std::string(explore::meaning(mode)));
+    }
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void ExploreWindow::fly_to(const core::Place& place) {
+  if (guide_.inside() != nullptr) return show_message("press Esc to leave the panorama first", true);
+  welcome_.dismiss();
+  state_.large_map = false;
+  session_.go(explore::arrival(place, session_.screen(), session_.ground()));
+  show_message(place.name);
+}
+
 void ExploreWindow::draw_side() {
-  int width = 0;
-  int height = 0;
-  display_.framebuffer(width, height);
   ImGui::SetNextWindowPos({0, 0});
-  ImGui::SetNextWindowSize(at(view_area_.x, height));
+  ImGui::SetNextWindowSize(at(layout_.side.width, layout_.side.height));
   ImGui::Begin("side", nullptr, kFixed);
   const double inside = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (!state_.large_map) draw_map(static_cast<int>(inside), static_cast<int>(std::round(inside * 0.5)));
+  if (const auto place = search_.draw(inside, widgets_)) fly_to(*place);
+  if (search_.takes_focus()) frames_due_ = kFramesAfterChange + 1;
+  // In a low window the tabs need the room more than the map.
+  const double map_height = std::round(std::min(inside * 0.5, layout_.side.height * 0.22));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + static_cast<float>(std::round(inside / 2 - map_height)));
+  draw_map(map_, static_cast<int>(2 * map_height), static_cast<int>(map_height));
   bool imagery = state_.map_style == explore::MapStyle::kImagery;
   if (widgets_.check("Imagery", imagery))
     state_.map_style = imagery ? explore::MapStyle::kImagery : explore::MapStyle::kElevation;
@@ -196,44 +253,107 @@ void ExploreWindow::draw_side() {
   ImGui::SameLine();
   if (widgets_.button("Help", "F1")) state_.help = !state_.help;
   ImGui::Separator();
-  if (ImGui::BeginTabBar("tabs")) {
-    if (widgets_.tab("Control")) {
-      draw_control_panel(session_, state_, widgets_);
-      ImGui::EndTabItem();
-    }
-    if (widgets_.tab("Flight")) {
-      const FlightActions actions = flight_.draw(session_, recorder_.is_recording(), widgets_);
-      if (actions.record) set_recording(*actions.record);
-      if (actions.restore) restore_flight(*actions.restore);
-      if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
-      ImGui::EndTabItem();
-    }
-    if (widgets_.tab("Measure")) {
-      ImGui::BeginChild("measure");
-      const MeasureActions actions = measure_.draw(session_, under_cursor_, widgets_);
-      if (actions.go_to) session_.go_to(*actions.go_to);
-      if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
-      ImGui::EndChild();
-      ImGui::EndTabItem();
-    }
-    if (widgets_.tab("Appearance")) {
-      if (const std::string error = draw_appearance_panel(session_, drawn(), widgets_); !error.empty())
-        show_message(error, true);
-      ImGui::EndTabItem();
-    }
-    if (widgets_.tab("Detail")) {
-      const std::string error = draw_detail_panel(session_, drawn(), *setup_.planet, widgets_);
-      if (!error.empty()) show_message(error, true);
-      ImGui::EndTabItem();
-    }
-    ImGui::EndTabBar();
-  }
+  draw_tabs();
   ImGui::End();
 }
 
-void ExploreWindow::draw_map(int width, int height) {
+void ExploreWindow::draw_tabs() {
+  const float scale = static_cast<float>(display_.scale());
+  // Tabs stand closer than other widgets, so that all of them fit.
+  const auto dense = [scale] {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * scale, 3 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, {2 * scale, 2 * scale});
+  };
+  const auto tab = [&](const char* label) {
+    dense();
+    const bool is_open = widgets_.tab(label);
+    ImGui::PopStyleVar(2);
+    return is_open;
+  };
+  dense();
+  const bool is_shown = ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown);
+  ImGui::PopStyleVar(2);
+  if (!is_shown) return;
+  if (tab("View")) {
+    draw_control_panel(session_, state_, widgets_);
+    ImGui::EndTabItem();
+  }
+  if (tab("Places")) {
+    const PlacesActions actions = places_.draw(session_, widgets_);
+    if (actions.go_to) {
+      session_.set_fov(actions.go_to->fov_deg);
+      session_.go(actions.go_to->pose);
+    }
+    if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+    ImGui::EndTabItem();
+  }
+  if (tab("Flight")) {
+    const FlightActions actions = flight_.draw(session_, recorder_.is_recording(), widgets_);
+    if (actions.record) set_recording(*actions.record);
+    if (actions.restore) restore_flight(*actions.restore);
+    if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+    ImGui::EndTabItem();
+  }
+  if (tab("Measure")) {
+    ImGui::BeginChild("measure");
+    const MeasureActions actions = measure_.draw(session_, under_cursor_, widgets_);
+    if (actions.go_to) session_.go_to(*actions.go_to);
+    if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+    ImGui::EndChild();
+    ImGui::EndTabItem();
+  }
+  if (tab("Draw")) {
+    drawing_.draw(widgets_);
+    ImGui::EndTabItem();
+  }
+  if (tab("Look")) {
+    if (const std::string error = appearance_.draw(session_, drawn(), widgets_); !error.empty())
+      show_message(error, true);
+    ImGui::EndTabItem();
+  }
+  if (tab("Detail")) {
+    const std::string error = draw_detail_panel(session_, drawn(), *setup_.planet, widgets_);
+    if (!error.empty()) show_message(error, true);
+    ImGui::EndTabItem();
+  }
+  ImGui::EndTabBar();
+}
+
+// Draws what changes the side panel's width: its edge, or a button in a narrow window.
+void ExploreWindow::draw_side_handle() {
+  const double scale = display_.scale();
+  const double edge = layout_.side.width;
+  if (layout_.is_narrow) {
+    ImGui::SetNextWindowPos(at(edge + 4 * scale, 4 * scale));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(0, 0));
+    ImGui::Begin("side switch", nullptr,
+                 kFixed | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_AlwaysAutoResize);
+    widgets_.toggle("\u2261##side", state_.side_is_open, "show or hide the panel");
+    ImGui::End();
+    ImGui::PopStyleVar();
+    return;
+  }
+  ImGui::SetNextWindowPos(at(edge - 3 * scale, 0));
+  ImGui::SetNextWindowSize(at(6 * scale, layout_.side.height));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, at(1, 1));
+  ImGui::Begin("side edge", nullptr,
+               (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_NoBackground |
+                   ImGuiWindowFlags_NoScrollbar);
+  ImGui::InvisibleButton("edge", at(6 * scale, layout_.side.height));
+  widgets_.record("side edge");
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1)) {
+    state_.side_px = std::clamp(static_cast<double>(ImGui::GetIO().MousePos.x) / scale,
+                                LayoutLimits::kNarrowest_px, LayoutLimits::kWidest_px);
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void ExploreWindow::draw_map(MapPanel& map, int width, int height) {
   const MapActions actions =
-      map_.draw(session_, state_.map_style, measure_.points(), guide_.hotspots(), width, height, widgets_);
+      map.draw(session_, state_.map_style, measure_.points(), guide_.hotspots(), width, height, widgets_);
   if (actions.under_cursor) under_cursor_ = actions.under_cursor;
   if (guide_.inside() != nullptr) {
     if (actions.go_to || actions.new_waypoint || actions.new_region || actions.drag)
@@ -241,6 +361,11 @@ void ExploreWindow::draw_map(int width, int height) {
     return;
   }
   if (actions.go_to) session_.go_to(*actions.go_to);
+  if (actions.aim_at) {
+    mars::Pose pose = session_.pose();
+    pose.yaw_deg = mars::initial_bearing_deg({pose.lon_deg, pose.lat_deg}, *actions.aim_at);
+    session_.put(pose);
+  }
   if (actions.new_region) {
     std::vector<core::InterestRegion> regions(session_.interest().begin(), session_.interest().end());
     regions.push_back(*actions.new_region);
@@ -253,62 +378,11 @@ void ExploreWindow::draw_map(int width, int height) {
     pose.lon_deg = actions.new_waypoint->lon_deg;
     pose.lat_deg = actions.new_waypoint->lat_deg;
     pose.alt_m = session_.ground().height_m(mars::direction(*actions.new_waypoint)) + session_.height_m();
-    error = session_.flights().append(pose, flight_.ground_speed_m_s());
+    error = session_.flights().append(pose, flight_.ground_speed_m_s(session_));
   }
   if (explore::FlightEditor* editor = session_.flights().editor(); actions.drag && editor != nullptr)
     error = editor->move(actions.drag->waypoint, actions.drag->to, actions.drag->continues);
   if (!error.empty()) show_message(error, true);
-}
-
-void ExploreWindow::draw_status() {
-  int width = 0;
-  int height = 0;
-  display_.framebuffer(width, height);
-  ImGui::SetNextWindowPos(at(view_area_.x, view_area_.height));
-  ImGui::SetNextWindowSize(at(view_area_.width, height - view_area_.height));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(8 * display_.scale(), 5 * display_.scale()));
-  ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
-  const mars::Pose& pose = session_.pose();
-  const bool from_zero = setup_.preferences.longitude == explore::LongitudeRange::kPositive;
-  const double lon_deg = from_zero && pose.lon_deg < 0 ? pose.lon_deg + 360 : pose.lon_deg;
-  std::string place = formatted(
-      "%.5f°, %.5f°   altitude %s, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg,
-      pose.lat_deg, panel_length_text(pose.alt_m).c_str(), panel_length_text(session_.height_m()).c_str(),
-      pose.yaw_deg < 0 ? pose.yaw_deg + 360 : pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
-  if (const OverlookView* inside = guide_.inside(); inside != nullptr)
-    place = guide_.inside_hotspot()->name + formatted("   azimuth %.2f°  elevation %.2f°  field of view %.1f°",
-                                                      std::fmod(inside->viewer().yaw_deg() + 720.0, 360.0),
-                                                      inside->viewer().pitch_deg(), inside->viewer().fov_deg());
-  status_line(place, ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  if (!state_.message.empty()) {
-    status_line(state_.message, state_.message_is_error ? kErrorColour : kSuccessColour);
-  } else if (guide_.inside() == nullptr && drawn_) {
-    const core::DrawResult& r = drawn_->result;
-    const bool rays = drawn_->request.backend == core::Backend::kRay;
-    double mean_s = 0;
-    for (const double s : image_times_s_) mean_s += s / static_cast<double>(image_times_s_.size());
-    int finest = 0;
-    for (std::size_t n = 0; n < r.stats.tiles_by_level.size(); ++n)
-      if (r.stats.tiles_by_level[n] > 0) finest = static_cast<int>(n);
-    const double spacing_m =
-        lod::post_spacing_m(finest, setup_.planet->meta().tile.intervals(), setup_.planet->radius_m());
-    std::string line = session_.settings().get("mode").value_or("") + (rays ? " by rays" : " by triangles") +
-                       "   level " + std::to_string(finest) + " (" + panel_length_text(spacing_m) +
-                       " posts)   error below " +
-                       formatted("%.2f px", r.certificate.shift_bound_px / drawn_->request.px_per_screen_px);
-    const core::View& drawn = drawn_->request.draw.view;
-    line += "   " + (rays ? formatted("%.0f k rays", drawn.width * drawn.height / 1e3)
-                          : formatted("%.0f k triangles", static_cast<double>(r.stats.triangles) / 1e3));
-    line += "   " + formatted("%.0f MB", static_cast<double>(r.stats.bytes_resident) / 1e6) + "   " +
-            formatted("%.0f ms", mean_s * 1e3);
-    const std::int64_t loading = r.stats.pages_wanted + r.stats.pages_loading;
-    if (loading > 0 && !r.settled) line += "   loading " + std::to_string(loading);
-    if (!drawn_->request.is_full) line += "   coarser while moving";
-    if (drawn_->request.stereo) line += "   (left eye)";
-    status_line(line, ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  }
-  ImGui::End();
-  ImGui::PopStyleVar();
 }
 
 }  // namespace vpe::window

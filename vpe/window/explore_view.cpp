@@ -8,15 +8,18 @@
 #include "vpe/base/number.h"
 #include "vpe/explore/foresight.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/marks/flight_marks.h"
 
 namespace vpe::window {
 
 void ExploreWindow::request_image() {
+  const explore::DrawChoice chosen = chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m},
+                                                     session_.follows_flight() ? session_.player() : nullptr);
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
-  const std::string state = std::string(core::to_string(state_.drawn_by)) +
-                            (state_.stereo ? core::to_string(*state_.stereo) : "") +
-                            base::format_number(state_.eye_base_m);
+  const std::string state = std::string(core::to_string(chosen.drawn_by)) +
+                            (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
+                            base::format_number(chosen.eye_base_m);
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
@@ -24,9 +27,8 @@ void ExploreWindow::request_image() {
   shown_state_ = state;
   ImageRequest request;
   request.number = ++requested_;
-  request.stereo = state_.stereo;
-  request.eye_base_m =
-      state_.eye_base_m > 0 ? state_.eye_base_m : std::max(session_.height_m(), 1.0) / core::kNearestToBase;
+  request.stereo = chosen.stereo;
+  request.eye_base_m = chosen.eye_base_m > 0 ? chosen.eye_base_m : core::base_for_height_m(session_.height_m());
   request.draw.view = next->view;
   request.draw.settings = session_.settings().values();
   request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
@@ -34,14 +36,15 @@ void ExploreWindow::request_image() {
   request.draw.coarsening = next->multiplier;
   request.draw.paging.wait = false;
   request.draw.paging.upcoming = foreseen_views(next->view);
-  request.is_auto = state_.drawn_by == core::DrawnBy::kAuto;
+  request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
-      core::backend_for(state_.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
+      core::backend_for(chosen.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
                                           session_.pose().alt_m / session_.ground().radius_m, state_.backend});
   // Beside the finest tiles everywhere, any tolerance would be a leap.
   const bool is_exact = request.backend == core::Backend::kRay && !request.is_auto &&
                         request.draw.settings.ray_mode != core::RayMode::kMultires;
   if (is_exact) request.draw.coarsening = 1;
+  const ImageRequest drawn = setup_.as_drawn ? setup_.as_drawn(request) : request;
   // Tolerances are in pixels of the screen, also where the image has fewer.
   request.is_full = next->is_full;
   request.px_per_screen_px = next->side;
@@ -49,7 +52,7 @@ void ExploreWindow::request_image() {
   request.draw.settings.ray_cell_px *= next->side;
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
   if (flight != nullptr) request.flight_time_s = flight->time_s();
-  if (const std::string error = recorder_.record_image(request, session_, now_s()); !error.empty())
+  if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));
 }
@@ -114,7 +117,7 @@ bool ExploreWindow::step_overlook(const DeviceReading& input, double dt_s) {
   const std::string error =
       recorder_.record_overlook(inside->viewer(), guide_.inside_camera_m(), session_, now_s());
   if (!error.empty()) show_message(error, true);
-  if (shows_map() && !map_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if (!maps_rest()) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0) {
     draw_frame();
     --frames_due_;
@@ -184,12 +187,15 @@ void ExploreWindow::draw_view() {
     return;
   }
   if (!drawn_) return;
-  const ViewArea area = drawn_->request.stereo == state_.stereo ? image_layout().image_area() : view_area_;
+  const ViewArea area =
+      drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
   list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
-  if (state_.stereo) return;
+  if (chooser_.choice().stereo) return;
   list.PushClipRect(at(view_area_.x, view_area_.y),
                     at(view_area_.x + view_area_.width, view_area_.y + view_area_.height), true);
   if (!measure_.points().empty()) measure_.draw_marks(list, session_, view_area_.x, view_area_.y);
+  draw_flight_marks(list, session_, flight_.selected(), view_area_.x, view_area_.y);
+  drawing_.draw_marks(list, session_, under_cursor_, view_area_.x, view_area_.y);
   guide_.draw_marks(list, session_, view_area_.x, view_area_.y);
   list.PopClipRect();
 }

@@ -10,6 +10,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "vpe/window/panels/overlay_bar.h"
+
 namespace vpe::window {
 
 namespace {
@@ -37,6 +39,12 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       map_(setup_.planet, setup_.threads, [] { Display::wake(); }),
       measure_(setup_.surface, [] { Display::wake(); }),
       flight_(setup_.flight_file, setup_.folder),
+      places_(setup_.bookmarks),
+      search_(explore::PlaceSearch(setup_.places)),
+      welcome_(search_.places()),
+      drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
+      project_file_(setup_.project_file),
+      drawing_copy_(setup_.state, ".vpeproj", "drawings"),
       guide_(setup_.hotspots, setup_.open_overlook),
       backup_(setup_.state),
       live_({setup_.session.settings.values().lod_frame_ms}),
@@ -49,10 +57,12 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       last_step_(begun_),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   state_.drawn_by = setup_.drawn_by;
+  state_.panels = setup_.panels;
+  state_.side_px = setup_.side_px;
+  if (!setup_.greets) welcome_.dismiss();
   lay_out();
   if (!setup_.session.start)
     session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
-  state_.panels = setup_.panels;
   if (!setup_.log.empty()) set_recording(true, setup_.log);
   // All errors are shown together, and instead of other messages.
   std::string errors = state_.message_is_error ? state_.message : "";
@@ -61,6 +71,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   };
   for (const std::string& error : devices_.errors()) add(error);
   if (setup_.flight) add(session_.flights().load(*setup_.flight));
+  add(open_project());
   const std::vector<std::filesystem::path> abandoned = backup_.abandoned();
   flight_.offer(abandoned);
   if (!errors.empty())
@@ -69,6 +80,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
     clear_message();
   else if (!abandoned.empty())
     show_message("an earlier session left an unsaved flight: 'Restore' in the panel 'Flight' opens it");
+  else if (!drawing_copy_.abandoned().empty())
+    show_message("an earlier session left unsaved drawings: 'Restore' in the panel 'Draw' adds them");
 }
 
 ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
@@ -82,8 +95,14 @@ void ExploreWindow::run() {
 
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
-  return maker_->is_idle() && (!shows_map() || map_.is_at_rest()) && measure_.is_at_rest() &&
-         !session_.is_going() && frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
+  return maker_->is_idle() && maps_rest() && measure_.is_at_rest() && drawing_.is_at_rest() &&
+         !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
+         live_.state() == lod::RefinementState::kWaiting;
+}
+
+bool ExploreWindow::maps_rest() const {
+  return (!state_.panels || layout_.side.width <= 0 || map_.is_at_rest()) &&
+         (!state_.large_map || large_map_ == nullptr || large_map_->is_at_rest());
 }
 
 bool ExploreWindow::shows_final_image() const {
@@ -101,6 +120,12 @@ double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
   return moves || live_.state() != lod::RefinementState::kWaiting ? pause_s : rest_s;
 }
 
+// Returns the mode in which keys act: a flight and a panorama have their own.
+explore::MotionMode ExploreWindow::key_mode() const {
+  return session_.follows_flight() || guide_.inside() != nullptr ? explore::MotionMode::kOrbit
+                                                                 : session_.mode();
+}
+
 // Where the cursor moves over the view alone, little changes but the read-out.
 bool ExploreWindow::is_over_view() const {
   return view_area_.holds(cursor_.x, cursor_.y) && !ImGui::GetIO().WantCaptureMouse && !state_.help &&
@@ -110,13 +135,18 @@ bool ExploreWindow::is_over_view() const {
 bool ExploreWindow::step(double wait_s) {
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
   const bool plays = flight != nullptr && flight->is_playing();
-  const bool moves = session_.is_going() || plays || was_moving_;
+  const bool moves = session_.is_going() || session_.is_moving() || plays || was_moving_;
   const bool is_inside = guide_.inside() != nullptr;
   const bool busy = is_inside ? !guide_.inside()->is_at_rest() || frames_due_ > 0
                               : moves || !maker_->is_idle() || frames_due_ > 0 ||
                                     live_.state() != lod::RefinementState::kWaiting;
-  const double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  if (tip_at_s_) rest_s = std::min(rest_s, std::max(*tip_at_s_ - now_s(), 0.001));
   const std::vector<Event> events = display_.events(event_wait_s(moves, rest_s));
+  if (tip_at_s_ && now_s() >= *tip_at_s_) {
+    tip_at_s_.reset();
+    frames_due_ = std::max(frames_due_, 1);
+  }
   if (display_.should_close()) return false;
   for (const Event& event : events) {
     handle(event);
@@ -125,7 +155,7 @@ bool ExploreWindow::step(double wait_s) {
     frames_due_ = std::max(frames_due_, hovers ? 1 : kFramesAfterChange);
   }
   lay_out();
-  const DeviceReading input = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
+  const DeviceReading input = devices_.read(now_s(), ImGui::GetIO().WantTextInput, key_mode());
   for (const explore::Action& action : input.actions) {
     if (const std::string error = act(action); !error.empty()) show_message(error, true);
     frames_due_ = kFramesAfterChange;
@@ -142,6 +172,7 @@ bool ExploreWindow::step(double wait_s) {
   explore::Controls controls = input.controls;
   controls.speed *= state_.speed;
   was_moving_ = explore::any(controls);
+  if (was_moving_) welcome_.dismiss();
   session_.advance(dt_s, controls, input.look);
 
   if (const std::string text = guide_.follow(session_, view_area_); !text.empty()) show_message(text);
@@ -149,7 +180,7 @@ bool ExploreWindow::step(double wait_s) {
   // The next image is drawn while the last one is shown.
   const bool is_new = take_image();
   request_image();
-  if ((shows_map() && !map_.is_at_rest()) || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (is_new || (frames_due_ > 0 && now_s() >= next_frame_s_)) {
     draw_frame();
     --frames_due_;
@@ -171,13 +202,17 @@ void ExploreWindow::replace_planet(ShownPlanet next) {
   static_cast<ShownPlanet&>(setup_) = std::move(next);
   session_.set_surface(setup_.surface);
   map_.set_planet(setup_.planet);
+  if (large_map_ != nullptr) large_map_->set_planet(setup_.planet);
   measure_.set_surface(setup_.surface);
+  drawing_.set_surface(setup_.surface);
   maker_ = std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); });
   show_message("the planet is complete");
 }
 
 // Keeps the flight as it is between two drags, and the session when the view has come to rest.
 void ExploreWindow::keep_work(bool is_busy) {
+  take_drawing_actions();
+  keep_drawings();
   if (!ImGui::IsAnyMouseDown()) {
     if (const std::string error = backup_.update(session_.flights().editor()); !error.empty())
       show_message(error, true);
@@ -187,6 +222,8 @@ void ExploreWindow::keep_work(bool is_busy) {
   const KeptSession now{{p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg},
                         state_.drawn_by,
                         state_.panels,
+                        state_.side_px,
+                        overlays_on(session_.settings()),
                         display_.size()};
   if (session_kept_ == now) return;
   session_kept_s_ = now_s();
@@ -211,6 +248,7 @@ void ExploreWindow::handle(const Event& event) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
+  if (handle_drawing(event)) return;
   switch (event.kind) {
     case Event::Kind::kKeyPress:
     case Event::Kind::kKeyRepeat:
@@ -219,23 +257,29 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kRelease: handle_button(event); break;
     case Event::Kind::kMove:
       if (session_.mouse_use() != explore::MouseUse::kNone)
-        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_);
+        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_, event.time_s);
       break;
     case Event::Kind::kScroll:
       if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
-        session_.wheel(*xy, event.scroll);
+        scroll(*xy, event.scroll);
       break;
     case Event::Kind::kDrop: break;  // handled above
   }
 }
 
+void ExploreWindow::scroll(glm::dvec2 xy, double notches) {
+  welcome_.dismiss();
+  session_.wheel(xy, notches);
+}
+
 void ExploreWindow::handle_button(const Event& event) {
   if (event.kind == Event::Kind::kRelease) {
-    session_.release();
+    session_.release(event.time_s);
     return;
   }
   const std::optional<glm::dvec2> over = image_layout().camera_xy(cursor_);
   if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
+  welcome_.dismiss();
   const glm::dvec2 xy = *over;
   held_half_ = image_layout().unwrapped_xy(cursor_) - xy;
   if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
@@ -247,23 +291,23 @@ void ExploreWindow::handle_button(const Event& event) {
       session_.fly_towards(xy);
       return;
     }
-    session_.press(
-        (event.modifiers & GLFW_MOD_SHIFT) != 0 ? explore::MouseUse::kTilt : explore::MouseUse::kHold, xy);
+    const bool tilts = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+    const bool looks = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+    session_.press(looks   ? explore::MouseUse::kLook
+                   : tilts ? explore::MouseUse::kTilt
+                           : explore::MouseUse::kHold,
+                   xy, event.time_s);
     return;
   }
-  session_.press(explore::MouseUse::kTilt, xy);
+  session_.press(explore::MouseUse::kTilt, xy, event.time_s);
 }
 
 void ExploreWindow::lay_out() {
   int width = 1;
   int height = 1;
   display_.framebuffer(width, height);
-  const double side = state_.panels ? std::round(330.0 * display_.scale()) : 0.0;
-  const double status = state_.panels ? std::round(50.0 * display_.scale()) : 0.0;
-  view_area_.x = std::min(side, width - 16.0);
-  view_area_.y = 0;
-  view_area_.width = std::max(16.0, width - side);
-  view_area_.height = std::max(16.0, height - status);
+  layout_ = layout_of({width, height, display_.scale(), state_.panels, state_.side_px, state_.side_is_open});
+  view_area_ = layout_.view;
   session_.resize(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
 }
 

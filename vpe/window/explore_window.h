@@ -15,23 +15,34 @@
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/drawn_by.h"
+#include "vpe/explore/draw_choice.h"
+#include "vpe/explore/drawing/bookmark_list.h"
+#include "vpe/explore/drawing/project.h"
 #include "vpe/explore/files/bookmarks.h"
 #include "vpe/explore/files/preferences.h"
+#include "vpe/explore/files/unsaved_copy.h"
 #include "vpe/explore/files/view_history.h"
 #include "vpe/explore/flight_backup.h"
 #include "vpe/explore/live_image.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/devices.h"
-#include "vpe/window/display.h"
-#include "vpe/window/flight_panel.h"
+#include "vpe/window/explore_layout.h"
 #include "vpe/window/hotspot_guide.h"
-#include "vpe/window/image_maker.h"
-#include "vpe/window/imgui_helpers.h"
-#include "vpe/window/map_panel.h"
-#include "vpe/window/measure_panel.h"
-#include "vpe/window/painter.h"
+#include "vpe/window/panels/appearance_panel.h"
+#include "vpe/window/panels/drawing_panel.h"
+#include "vpe/window/panels/flight_panel.h"
+#include "vpe/window/panels/map_panel.h"
+#include "vpe/window/panels/measure_panel.h"
+#include "vpe/window/panels/places_panel.h"
+#include "vpe/window/panels/search_box.h"
+#include "vpe/window/panels/status_line.h"
+#include "vpe/window/panels/welcome.h"
 #include "vpe/window/session_recorder.h"
-#include "vpe/window/widgets.h"
+#include "vpe/window/ui/display.h"
+#include "vpe/window/ui/imgui_helpers.h"
+#include "vpe/window/ui/widgets.h"
+#include "vpe/window/workers/image_maker.h"
+#include "vpe/window/workers/painter.h"
 
 namespace vpe::window {
 
@@ -59,6 +70,9 @@ struct ExploreSetup : ShownPlanet {
   bool has_gpu = false;  // for kAuto
   // Returns whether rays draw the same image as triangles; for kAuto. Empty: always.
   std::function<bool(const core::DrawRequest&)> suits_rays;
+  // Returns a request with the backend and the mode of rays that the painter draws it with; for logs. Empty: those of
+  // the request.
+  std::function<ImageRequest(ImageRequest)> as_drawn;
   // Returns the unit, body-fixed direction of the sun.
   std::function<glm::dvec3(const core::SettingsValues&, const mars::Pose&)> sun;
   OpenPlanet open_planet;  // for files dropped on the window; called on a thread of its own
@@ -76,7 +90,19 @@ struct ExploreSetup : ShownPlanet {
   std::filesystem::path log;  // file to record from the start; empty: none
   std::optional<scripts::Flight> flight;
   std::string flight_file;  // where the flight is saved
-  bool panels = true;       // shown at the start
+  // A project that is open: its drawings, bookmarks, flight and overlays. Settings, view and regions are in
+  // `session`.
+  std::optional<explore::Project> project;
+  std::filesystem::path project_file;   // where it is saved; empty: a new file
+  std::filesystem::path planet_file;    // that a project names; empty: the embedded Mars
+  std::filesystem::path hotspots_file;  // likewise; empty: none
+  bool panels = true;                   // shown at the start
+  double side_px = 0;                   // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
+  std::vector<core::Place> places;      // that the search box finds
+  std::string places_file;              // the same, for names over the image; empty: there is none
+  bool greets = false;                  // says at the start how to move
+  // Returns a command that draws the present view, to be copied. Empty: there is none.
+  std::function<std::string(const explore::Session&)> command_line;
   int threads = 0;
 };
 
@@ -88,6 +114,8 @@ struct WindowState {
   double eye_base_m = 0;  // 0: a thirtieth of the height above ground
   double speed = 1;       // factor on motion by hand
   bool panels = true;
+  double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
+  bool side_is_open = false;  // in a narrow window
   bool help = false;
   bool large_map = false;
   explore::MapStyle map_style = explore::MapStyle::kElevation;
@@ -174,6 +202,11 @@ class ExploreWindow {
   // Saves a flight with unsaved changes to a new file. Returns a message about it for the time after the window
   // was closed, or "" if there is no such flight.
   std::string exit_message();
+  // Does the same for drawings and bookmarks of a project.
+  std::string drawings_message();
+  // Returns the project as it is now.
+  explore::Project project() const;
+  DrawingPanel& drawing() { return drawing_; }
   // Runs one iteration of the event loop: events, devices, panels, an image if one is due. Waits for events for
   // at most `wait_s` seconds if there is nothing to do. Returns false if the window was closed.
   bool step(double wait_s);
@@ -199,7 +232,10 @@ class ExploreWindow {
   void capture(core::RgbImage* to) { capture_ = to; }
   // Returns the panorama that was entered, or null.
   const OverlookView* overlook() const { return guide_.inside(); }
+  // Returns what the status line says of the place under the cursor.
+  const std::string& cursor_line() const { return cursor_text_; }
   bool is_recording() const { return recorder_.is_recording(); }
+  const Welcome& welcome() const { return welcome_; }
   // Performs an action as its key would. Returns what is wrong, or "".
   std::string act(const explore::Action& action);
 
@@ -212,6 +248,8 @@ class ExploreWindow {
     std::array<double, 6> pose;  // the fields of mars::Pose
     core::DrawnBy drawn_by;
     bool panels;
+    double side_px;
+    std::vector<std::string> overlays;
     std::pair<int, int> size;
     bool operator==(const KeptSession&) const = default;
   };
@@ -221,19 +259,28 @@ class ExploreWindow {
   void lay_out();
   void draw_frame();
   void find_cursor();
-  ImageLayout image_layout() const { return {view_area_, state_.stereo}; }
-  bool shows_map() const { return state_.panels || state_.large_map; }
+  ImageLayout image_layout() const { return {view_area_, chooser_.choice().stereo}; }
+  bool maps_rest() const;
+  void scroll(glm::dvec2 xy, double notches);
   bool step_overlook(const DeviceReading& input, double dt_s);
   void leave_overlook();
   void draw_view();
   void draw_side();
+  void draw_tabs();
+  void draw_side_handle();
+  void draw_over_view();
+  void draw_modes();
   void draw_status();
-  void draw_map(int width, int height);
+  void draw_map(MapPanel& map, int width, int height);
+  void fly_to(const core::Place& place);
+  QualityText quality_of_image() const;
+  std::string copy_view();
   void request_image();
   std::vector<core::View> foreseen_views(const core::View& shown);
   bool take_image();  // returns true if there is a new one
   double event_wait_s(bool moves, double rest_s) const;
   bool is_over_view() const;
+  explore::MotionMode key_mode() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
   void show_message(std::string text, bool is_error = false);
@@ -242,21 +289,43 @@ class ExploreWindow {
   void keep_work(bool is_busy);
   void restore_flight(const std::filesystem::path& copy);
   void set_recording(bool on, const std::filesystem::path& file = {});
+  // explore_project.cpp:
+  std::string open_project();
+  bool has_project() const { return !project_file_.empty(); }
+  bool handle_drawing(const Event& event);
+  void take_drawing_actions();
+  std::string project_text() const;
+  void save_project();
+  void keep_drawings();
+  void restore_drawings(const std::filesystem::path& copy);
+  std::string act_on_project_bookmark(const explore::Action& action);
   double now_s() const;
 
   ExploreSetup setup_;
   explore::Session session_;
   WindowState state_;
+  explore::DrawChooser chooser_;
   Display display_;
   Widgets widgets_;
   MapPanel map_;
+  std::unique_ptr<MapPanel> large_map_;  // once it was shown
   MeasurePanel measure_;
   FlightPanel flight_;
+  AppearancePanel appearance_;
+  PlacesPanel places_;
+  SearchBox search_;
+  Welcome welcome_;
+  DrawingPanel drawing_;
+  explore::BookmarkList project_bookmarks_;
+  std::filesystem::path project_file_;  // empty: no project is open
+  explore::UnsavedCopy drawing_copy_;
+  double drawings_kept_s_ = -1e9;
   HotspotGuide guide_;
   explore::FlightBackup backup_;
   double session_kept_s_ = 0;
   std::optional<KeptSession> session_kept_;
   std::optional<mars::LonLat> under_cursor_;  // in view or map
+  std::string cursor_text_;                   // of the place that was under it last
   Texture view_texture_;
   explore::LiveImage live_;
   std::optional<DrawnImage> drawn_;
@@ -264,7 +333,8 @@ class ExploreWindow {
   std::uint64_t shown_changes_ = 0;  // Session::changes() and the window's state at the last request
   std::string shown_state_;
   std::optional<std::pair<double, mars::Pose>> last_pose_;  // at the last request, and its time
-  ViewArea view_area_;
+  ExploreLayout layout_;
+  ViewArea view_area_;  // layout_.view
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
   glm::dvec2 held_half_{0, 0};  // offset of the image of the eye in which the button was pressed
@@ -281,8 +351,9 @@ class ExploreWindow {
   std::chrono::steady_clock::time_point last_step_;
   std::deque<double> image_times_s_;
   int frames_due_ = 3;
-  double next_frame_s_ = 0;  // not before, while only the cursor moves over the view
-  bool was_moving_ = false;  // by hand
+  std::optional<double> tip_at_s_;  // when a tooltip is due
+  double next_frame_s_ = 0;         // not before, while only the cursor moves over the view
+  bool was_moving_ = false;         // by hand
   std::int64_t frames_ = 0;
   std::int64_t images_ = 0;
   core::RgbImage* capture_ = nullptr;

@@ -14,8 +14,8 @@
 
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/session.h"
-#include "vpe/window/imgui_helpers.h"
 #include "vpe/window/overlook_view.h"
+#include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string>
 
-#include "vpe/window/imgui_helpers.h"
 #include "vpe/window/overlook_window.h"
+#include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
 

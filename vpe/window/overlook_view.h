@@ -31,10 +31,10 @@
 #include "vpe/explore/input/controls.h"
 #include "vpe/explore/live_image.h"
 #include "vpe/overlay/compass.h"
-#include "vpe/window/display.h"
-#include "vpe/window/image_maker.h"
-#include "vpe/window/imgui_helpers.h"
-#include "vpe/window/painter.h"
+#include "vpe/window/ui/display.h"
+#include "vpe/window/ui/imgui_helpers.h"
+#include "vpe/window/workers/image_maker.h"
+#include "vpe/window/workers/painter.h"
 
 namespace vpe::window {
 

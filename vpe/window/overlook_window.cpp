@@ -49,10 +49,15 @@ double OverlookWindow::now_s() const { return seconds(Clock::now() - begun_); }
 
 bool OverlookWindow::step(double wait_s) {
   const bool busy = !is_at_rest();
-  const double longest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  double longest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  if (tip_at_s_) longest_s = std::min(longest_s, std::max(*tip_at_s_ - now_s(), 0.001));
   const double pause_s = std::max(0.0, kShortestFrame_s - seconds(Clock::now() - last_step_));
   const std::vector<Event> events = display_.events(busy ? pause_s : longest_s);
   if (display_.should_close()) return false;
+  if (tip_at_s_ && now_s() >= *tip_at_s_) {
+    tip_at_s_.reset();
+    frames_due_ = std::max(frames_due_, 1);
+  }
   lay_out();
   const bool captured = ImGui::GetIO().WantCaptureMouse;
   for (const Event& event : events) {
@@ -79,6 +84,7 @@ bool OverlookWindow::step(double wait_s) {
   if (frames_due_ > 0) {
     draw_frame();
     --frames_due_;
+    tip_at_s_ = widgets_.tip_due_s() ? std::optional(now_s() + *widgets_.tip_due_s()) : std::nullopt;
   }
   return !display_.should_close();
 }

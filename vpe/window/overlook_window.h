@@ -8,9 +8,9 @@
 
 #include "vpe/explore/files/preferences.h"
 #include "vpe/window/devices.h"
-#include "vpe/window/display.h"
 #include "vpe/window/overlook_view.h"
-#include "vpe/window/widgets.h"
+#include "vpe/window/ui/display.h"
+#include "vpe/window/ui/widgets.h"
 
 namespace vpe::window {
 
@@ -73,6 +73,7 @@ class OverlookWindow {
   std::chrono::steady_clock::time_point begun_;
   std::chrono::steady_clock::time_point last_step_;
   int frames_due_;
+  std::optional<double> tip_at_s_;  // when a tooltip is due
   std::int64_t frames_ = 0;
   core::RgbImage* capture_ = nullptr;
 };

@@ -30,7 +30,6 @@ std::string SessionRecorder::start(const std::filesystem::path& file, const expl
     log_ = std::make_unique<explore::SessionLog>(file, view, session.ground().radius_m);
     file_ = file;
     begun_s_ = now_s;
-    comment_.clear();
     return {};
   } catch (const std::exception& e) {
     log_.reset();
@@ -44,19 +43,34 @@ std::string SessionRecorder::stop(double now_s) {
   return error;
 }
 
-std::string SessionRecorder::record_image(ImageRequest& request, const explore::Session& session,
-                                          double now_s) {
+namespace {
+
+// Returns the settings of an image. Rays that keep to the tolerance because nobody named them have another mode than
+// the session's, and only with that mode does a replay draw the same image.
+core::Settings settings_of(const ImageRequest& drawn, const explore::Session& session) {
+  core::Settings settings = session.settings();
+  if (drawn.backend != core::Backend::kRay || drawn.draw.settings.ray_mode == settings.values().ray_mode)
+    return settings;
+  (void)settings.set("rays.mode", "multires");
+  (void)settings.set("rays.cell", base::format_number(drawn.draw.settings.ray_cell_px));
+  return settings;
+}
+
+}  // namespace
+
+std::string SessionRecorder::record_image(ImageRequest& request, const ImageRequest& drawn,
+                                          const explore::Session& session, double now_s) {
   return write([&] {
     const double time_s = now_s - begun_s_;
-    const std::string comment = "drawn by " + std::string(core::to_string(request.backend)) + ", " +
-                                std::to_string(session.screen().width) + "x" +
-                                std::to_string(session.screen().height) + ", field of view " +
-                                base::format_number(session.screen().fov_deg) + " degrees" +
-                                (request.stereo ? ", " + std::string(core::to_string(*request.stereo)) : "");
-    if (comment != comment_) log_->note(time_s, comment);
-    comment_ = comment;
-    request.logged_s =
-        log_->frame({time_s, session.pose(), session.look()}, session.settings(), request.draw.interest);
+    const explore::Screen& screen = session.screen();
+    scripts::ViewState view;
+    view.fov_deg = screen.fov_deg;
+    view.size = scripts::ImageSize{screen.width, screen.height};
+    view.backend = core::drawn_by(drawn.backend);
+    view.eyes = scripts::Eyes{request.stereo};
+    if (request.stereo) view.eye_base_m = request.eye_base_m;
+    request.logged_s = log_->frame({time_s, session.pose(), session.look(), view}, settings_of(drawn, session),
+                                   request.draw.interest);
   });
 }
 

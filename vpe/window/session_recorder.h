@@ -10,7 +10,7 @@
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/files/session_log.h"
 #include "vpe/explore/session.h"
-#include "vpe/window/painter.h"
+#include "vpe/window/workers/painter.h"
 
 namespace vpe::window {
 
@@ -20,7 +20,7 @@ namespace vpe::window {
 //
 // Typical usage:
 //   if (const std::string error = recorder.start(file, session, now_s); !error.empty()) show(error);
-//   (void)recorder.record_image(request, session, now_s);   // for each image that is requested
+//   (void)recorder.record_image(request, as_drawn(request), session, now_s);   // for each image that is requested
 //   (void)recorder.stop(now_s);
 class SessionRecorder {
  public:
@@ -31,9 +31,11 @@ class SessionRecorder {
   // Returns the file that is or was written last.
   const std::filesystem::path& file() const { return file_; }
 
-  // Records the pose and settings of a request, and sets its logged_s. Backend, size, field of view and stereo
-  // layout become comments, which playback skips.
-  [[nodiscard]] std::string record_image(ImageRequest& request, const explore::Session& session, double now_s);
+  // Records pose, settings, field of view, size, backend and eyes of a request, and sets its logged_s. `drawn` is the
+  // request as its painter draws it at full quality (ExploreSetup::as_drawn): its backend and its mode of rays are
+  // recorded.
+  [[nodiscard]] std::string record_image(ImageRequest& request, const ImageRequest& drawn,
+                                         const explore::Session& session, double now_s);
 
   // Record entering, looking around in and leaving a panorama. In the flight the camera stands at the hotspot
   // and the head has the direction of the panorama's view.
@@ -49,7 +51,6 @@ class SessionRecorder {
   std::unique_ptr<explore::SessionLog> log_;
   std::filesystem::path file_;
   double begun_s_ = 0;
-  std::string comment_;                           // written last
   std::pair<double, double> overlook_deg_{0, 0};  // yaw and pitch in a panorama, written last
 };
 

@@ -89,11 +89,11 @@ core::DrawRequest draw_request_for(const PanoramaRequest& request) {
 // numbers.
 void take_palette_of_panorama(PanoramaRequest& request, const std::shared_ptr<const paging::PlanetFile>& planet,
                               const Common& common) {
-  constexpr std::int64_t kMostColumns = 960;
+  constexpr std::int64_t kWidest_px = 960;
   if (!needs_view_palette(request.settings.values(), *planet)) return;
   panorama::PlanOptions options = request.map;
   options.degrees_per_pixel.reset();
-  options.width_px = std::min(kMostColumns, panorama::plan_panorama(request.map).map.width_px);
+  options.width_px = std::min(kWidest_px, panorama::plan_panorama(request.map).map.width_px);
   const panorama::PanoramaMap map = panorama::plan_panorama(options).map;
   const panorama::Viewpoint viewpoint = panorama::viewpoint_of(request.camera, planet->radius_m());
   core::DrawRequest sample;

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "vpe/window/display.h"
+#include "vpe/window/ui/display.h"
 
 namespace vpe::app {
 

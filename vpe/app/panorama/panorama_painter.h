@@ -6,7 +6,7 @@
 
 #include "vpe/app/panorama/open_stereo.h"
 #include "vpe/window/overlook_view.h"
-#include "vpe/window/painter.h"
+#include "vpe/window/workers/painter.h"
 
 namespace vpe::app {
 

@@ -42,14 +42,17 @@ struct Stopped {};
 
 class FileLock {
  public:
-  // Waits for the lock. Throws Stopped once a stop is requested.
-  FileLock(const fs::path& path, const std::stop_token& stop)
+  // Waits for the lock; calls `waits` once if another process has it. Throws Stopped once a stop is requested.
+  FileLock(const fs::path& path, const std::stop_token& stop, const std::function<void()>& waits)
       : fd_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
     if (fd_ < 0) fail("open", path);
     const bool may_stop = stop.stop_possible();
+    bool is_first = true;
     int failed = 0;
-    while ((failed = ::flock(fd_, may_stop ? LOCK_EX | LOCK_NB : LOCK_EX)) != 0) {
-      if (may_stop && errno == EWOULDBLOCK) {
+    while ((failed = ::flock(fd_, may_stop || is_first ? LOCK_EX | LOCK_NB : LOCK_EX)) != 0) {
+      if (errno == EWOULDBLOCK && std::exchange(is_first, false)) {
+        waits();
+      } else if (may_stop && errno == EWOULDBLOCK) {
         std::this_thread::sleep_for(kLockRetry);
       } else if (errno != EINTR) {
         break;
@@ -120,7 +123,7 @@ std::shared_ptr<const paging::PlanetFile> find_cached(const fs::path& target, co
 
 // Opens the planet of this name in the cache; builds it first if it is not there, or unless it may be reused.
 std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,
-                                                 bool may_reuse,
+                                                 bool may_reuse, bool quiet,
                                                  const std::function<void(const fs::path&)>& build,
                                                  const std::stop_token& stop = {}) {
   const fs::path folder = cache_folder();
@@ -129,7 +132,9 @@ std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const 
   if (may_reuse) {
     if (auto planet = find_cached(target, what)) return planet;
   }
-  const FileLock lock(folder / (name + ".lock"), stop);
+  const FileLock lock(folder / (name + ".lock"), stop, [&] {
+    if (!quiet) std::fprintf(stderr, "vpe: note: another vpe is building %s; waiting for it\n", what.c_str());
+  });
   if (may_reuse) {
     if (auto planet = find_cached(target, what)) return planet;  // of a process that built it meanwhile
   }
@@ -185,7 +190,7 @@ std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& c
       // It is made again.
     }
   }
-  return cached(complete.stem().string() + "-coarse", "the coarse embedded Mars", true,
+  return cached(complete.stem().string() + "-coarse", "the coarse embedded Mars", true, common.quiet,
                 [&](const fs::path& target) {
                   paging::BuildOptions options;
                   options.threads = common.threads;
@@ -200,7 +205,7 @@ std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& c
 std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop) {
   try {
     return cached(
-        embedded_planet_path().stem().string(), "the embedded Mars", true,
+        embedded_planet_path().stem().string(), "the embedded Mars", true, common.quiet,
         [&](const fs::path& target) {
           paging::BuildOptions options;
           options.threads = common.threads > 0 ? common.threads : std::max(1, base::default_threads() - 1);
@@ -217,7 +222,7 @@ std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& co
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
-    return cached(embedded_planet_path().stem().string(), "the embedded Mars", true,
+    return cached(embedded_planet_path().stem().string(), "the embedded Mars", true, common.quiet,
                   [&](const fs::path& target) {
                     build_into(target, "the embedded Mars", mars::embedded_elevation(),
                                mars::embedded_image().get(), common);
@@ -237,10 +242,11 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
         "build' makes a planet file to keep\n",
         argument.c_str());
   }
-  return cached(cache_name(argument, state), argument, state.is_certain, [&](const fs::path& target) {
-    limit_rasters(common);
-    build_into(target, argument, mars::open_elevation(argument), nullptr, common);
-  });
+  return cached(cache_name(argument, state), argument, state.is_certain, common.quiet,
+                [&](const fs::path& target) {
+                  limit_rasters(common);
+                  build_into(target, argument, mars::open_elevation(argument), nullptr, common);
+                });
 }
 
 bool is_raster_argument(const std::string& argument) {

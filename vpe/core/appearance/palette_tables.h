@@ -1,4 +1,4 @@
-// The built-in palettes (for palette.cpp).
+// The built-in palettes.
 #pragma once
 
 #include <string_view>

@@ -1,0 +1,63 @@
+// The panel "Flight": playback, waypoints, recording.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vpe/explore/session.h"
+#include "vpe/window/ui/widgets.h"
+
+namespace vpe::window {
+
+// Holds what the window has to do after the panel was drawn.
+struct FlightActions {
+  std::optional<bool> record;                    // start or stop recording
+  std::optional<std::filesystem::path> restore;  // copy of an unsaved flight to open
+  std::string message;                           // empty: nothing new
+  bool message_is_error = false;
+};
+
+// Draws the panel and edits the session's flight. For the window's thread.
+class FlightPanel {
+ public:
+  // `file` is where the flight is saved; empty: a new file in `folder`.
+  FlightPanel(std::string file, std::filesystem::path folder);
+
+  // Draws the panel inside its tab.
+  FlightActions draw(explore::Session& session, bool is_recording, Widgets& widgets);
+
+  // Sets the copies of unsaved flights that a button offers while there is no flight.
+  void offer(std::vector<std::filesystem::path> abandoned) { abandoned_ = std::move(abandoned); }
+
+  // Returns the ground speed to waypoints that are added: the one that was typed, else that of keys at the camera's
+  // height.
+  double ground_speed_m_s(const explore::Session& session) const;
+  // Returns the pose that is marked in the list.
+  std::size_t selected() const { return static_cast<std::size_t>(waypoint_); }
+
+ private:
+  static void draw_player(explore::Session& session, Widgets& widgets);
+  void draw_empty(explore::Session& session, FlightActions& actions, Widgets& widgets);
+  void draw_file(explore::Session& session, FlightActions& actions, Widgets& widgets);
+  void draw_waypoints(explore::Session& session, FlightActions& actions, Widgets& widgets);
+  void draw_list(const std::vector<scripts::Waypoint>& waypoints, Widgets& widgets);
+  void open(explore::Session& session, FlightActions& actions);
+  void save(explore::FlightEditor& editor, FlightActions& actions);
+
+  std::string file_;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> abandoned_;
+  double ground_speed_m_s_ = 0;  // 0: by height
+  int waypoint_ = 0;             // selected in the list
+};
+
+// Reads and parses a flight of any length. Throws base::FileError.
+scripts::ParsedFlight read_flight_file(const std::filesystem::path& file);
+
+// Returns a new name in a folder: "vpe-KIND20261122-150405.png", with a number added if the file exists.
+std::filesystem::path new_file(const std::filesystem::path& folder, const std::string& kind,
+                               const std::string& extension);
+
+}  // namespace vpe::window

@@ -1,0 +1,286 @@
+#include "vpe/window/panels/measure_panel.h"
+
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <system_error>
+#include <utility>
+
+#include "mars/geodesy/place_text.h"
+#include "paging/planet/planet_meta.h"
+#include "vpe/base/file.h"
+#include "vpe/base/number.h"
+#include "vpe/window/panels/file_names.h"
+#include "vpe/window/panels/measure_marks.h"
+#include "vpe/window/panels/profile_plot_view.h"
+#include "vpe/window/ui/imgui_helpers.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr const char* kMeasuring = "measuring \u2026";
+constexpr double kMostHeight_m = 1e9;
+
+std::string coordinates(mars::LonLat place) {
+  return base::format_display(place.lon_deg, 5) + ", " + base::format_display(place.lat_deg, 5);
+}
+
+}  // namespace
+
+MeasurePanel::MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify)
+    : surface_(std::move(surface)),
+      notify_(std::move(notify)),
+      measurer_(std::make_unique<Measurer>(surface_, notify_)) {}
+
+void MeasurePanel::set_surface(std::shared_ptr<const paging::Surface> surface) {
+  surface_ = std::move(surface);
+  measurer_ = std::make_unique<Measurer>(surface_, notify_);
+  request();
+}
+
+void MeasurePanel::add(mars::LonLat place) {
+  if (!mars::is_valid(place)) return;
+  places_.push_back({mars::normalize_lon_deg(place.lon_deg), place.lat_deg});
+  request();
+}
+
+void MeasurePanel::erase(std::size_t index) {
+  if (index >= places_.size()) return;
+  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(index));
+  request();
+}
+
+void MeasurePanel::clear() {
+  places_.clear();
+  request();
+}
+
+std::optional<mars::LonLat> MeasurePanel::marked() const {
+  return ImGui::GetFrameCount() - marked_frame_ <= 1 ? marked_ : std::nullopt;
+}
+
+void MeasurePanel::request() {
+  measured_.reset();
+  marked_.reset();
+  measurer_->forget();
+  wanted_ = places_.size() < 2 ? 0 : measurer_->request({places_, from_height_m_, to_height_m_});
+}
+
+void MeasurePanel::take() {
+  std::optional<Measured> next = measurer_->take();
+  if (next && next->number == wanted_) measured_ = std::move(next);
+}
+
+MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
+                                  Widgets& widgets) {
+  take();
+  MeasureActions actions;
+  ImGui::BeginChild("measure");
+  if (ImGui::CollapsingHeader("Under the cursor", ImGuiTreeNodeFlags_DefaultOpen))
+    draw_read_out(session, under_cursor);
+  if (ImGui::CollapsingHeader("Place", ImGuiTreeNodeFlags_DefaultOpen)) draw_place(actions, widgets);
+  if (ImGui::CollapsingHeader("Path", ImGuiTreeNodeFlags_DefaultOpen)) {
+    draw_points(widgets);
+    if (places_.size() >= 2) draw_values();
+  }
+  if (places_.size() >= 2) {
+    if (ImGui::CollapsingHeader("Line of sight", ImGuiTreeNodeFlags_DefaultOpen)) draw_sight(widgets);
+  }
+  ImGui::EndChild();
+  return actions;
+}
+
+void MeasurePanel::draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor) {
+  if (under_cursor) {
+    read_out_error_.clear();
+    try {
+      explore::ReadOut out =
+          explore::read_out_at(session.surface(), *under_cursor, session.settings().values().exaggeration);
+      // A place on the map has a range only if the camera sees it.
+      const glm::dvec3 camera_m = session.view().camera.position_m;
+      const glm::dvec3 path = out.point_m - camera_m;
+      const double range_m = glm::length(path);
+      const double cast_m = range_m > 0 ? session.ground().cast_m(camera_m, path / range_m) : 0;
+      if (std::abs(cast_m - range_m) <= 0.01 + 1e-3 * range_m) out.range_m = range_m;
+      read_out_ = explore::read_out_lines(out);
+    } catch (const std::exception& e) {
+      read_out_.clear();
+      read_out_error_ = e.what();
+    }
+  }
+  // Of one height, so that what is below stays where it is while the cursor moves.
+  ImGui::BeginChild("read-out", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 11.5F));
+  if (!read_out_error_.empty()) {
+    coloured(kErrorColour, read_out_error_);
+  } else if (read_out_.empty()) {
+    ImGui::TextDisabled("Point at the ground in the view or on the map.");
+  } else {
+    const ValueTable table("read-out");
+    for (const explore::ReadOutLine& line : read_out_) table.add(line.label.c_str(), line.text);
+  }
+  ImGui::EndChild();
+}
+
+void MeasurePanel::draw_place(MeasureActions& actions, Widgets& widgets) {
+  ImGui::SetNextItemWidth(-1);
+  if (widgets.text(
+          "##place", place_text_,
+          "Longitude, latitude; also with E, W, N, S, or in degrees, minutes, seconds. Then press Enter.")) {
+    std::string fault;
+    place_read_ = mars::parse_place(place_text_, fault);
+    place_reply_ = place_read_ ? mars::place_text(*place_read_) : fault;
+    if (place_text_.empty()) place_reply_.clear();
+  }
+  if (place_reply_.empty())
+    ImGui::TextDisabled("Paste longitude, latitude and press Enter.");
+  else
+    coloured(place_read_ ? kSuccessColour : kErrorColour, place_reply_);
+  ImGui::BeginDisabled(!place_read_);
+  if (widgets.button("Go there") && place_read_) actions.go_to = place_read_;
+  ImGui::SameLine();
+  if (widgets.button("Add as a point") && place_read_) add(*place_read_);
+  ImGui::EndDisabled();
+}
+
+void MeasurePanel::draw_points(Widgets& widgets) {
+  if (places_.empty()) {
+    ImGui::TextDisabled("M adds the point under the cursor. Two points make a path.");
+    return;
+  }
+  std::optional<std::size_t> gone;
+  for (std::size_t n = 0; n < places_.size(); ++n) {
+    const std::string name = point_name(n);
+    if (widgets.button(("x##" + name).c_str(), "remove this point")) gone = n;
+    ImGui::SameLine();
+    ImGui::Text("%s   %s", name.c_str(), coordinates(places_[n]).c_str());
+  }
+  if (gone) erase(*gone);
+  if (widgets.button("Clear", "remove all points")) clear();
+}
+
+void MeasurePanel::draw_values() {
+  const ValueTable table("figures");
+  double arc_rad = 0;
+  for (std::size_t n = 1; n < places_.size(); ++n) arc_rad += mars::distance_rad(places_[n - 1], places_[n]);
+  table.add("Great circle", explore::measured_length_text(arc_rad * surface_->planet_radius_m()));
+  const explore::Profile* profile = measured_ ? measured_->profile.get() : nullptr;
+  const auto of_profile = [&](const std::string& text) {
+    return profile != nullptr ? text : std::string(measured_ ? "unknown" : kMeasuring);
+  };
+  const explore::Profile none;
+  const explore::Profile& p = profile != nullptr ? *profile : none;
+  table.add("Over ground", of_profile(explore::measured_length_text(p.ground_length_m)));
+  table.add("Lowest", of_profile(base::format_display(p.lowest_m, 1) + " m"));
+  table.add("Highest", of_profile(base::format_display(p.highest_m, 1) + " m"));
+  if (p.has_nodata) table.add("", "part of the path has no data");
+}
+
+void MeasurePanel::draw_sight(Widgets& widgets) {
+  const std::string first = point_name(0);
+  const std::string last = point_name(places_.size() - 1);
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 5);
+  bool changed = widgets.number((first + " (m)##from").c_str(), from_height_m_, 0, kMostHeight_m, 0, "%.6g",
+                                "height above the ground");
+  ImGui::SameLine();
+  changed |= widgets.number((last + " (m)##to").c_str(), to_height_m_, 0, kMostHeight_m, 0, "%.6g",
+                            "height above the ground");
+  ImGui::PopItemWidth();
+  if (changed) request();
+  if (!measured_) {
+    ImGui::TextDisabled("%s", kMeasuring);
+    return;
+  }
+  if (!measured_->sight) {
+    coloured(kErrorColour, measured_->error);
+    return;
+  }
+  const explore::LineOfSight& sight = *measured_->sight;
+  coloured(sight.visible ? kSuccessColour : kErrorColour,
+           sight.visible ? first + " and " + last + " see each other"
+                         : first + " and " + last + " do not see each other");
+  const ValueTable table("sight");
+  table.add("Straight", explore::measured_length_text(sight.distance_m));
+  table.add("Clearance", explore::measured_length_text(sight.clearance_m) + ", " +
+                             explore::measured_length_text(sight.clearance_distance_m) + " from " + first);
+  if (!sight.obstruction) return;
+  table.add("Obstructed at", coordinates(sight.obstruction->place) + "; " +
+                                 explore::measured_length_text(sight.obstruction->distance_m) + " from " +
+                                 first + ", " + base::format_display(sight.obstruction->elevation_m, 1) +
+                                 " m elevation");
+  table.add("Visible for",
+            std::isfinite(sight.needed_height_m)
+                ? last + " at " + explore::measured_length_text(sight.needed_height_m) + " above ground"
+                : "no height of " + last + ": it is too far behind the horizon");
+}
+
+MeasureActions MeasurePanel::draw_profile(Widgets& widgets) {
+  MeasureActions actions;
+  if (places_.size() < 2) return actions;
+  take();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const double line = static_cast<double>(ImGui::GetFrameHeightWithSpacing());
+  const double height = std::max(line, static_cast<double>(room.y) - line);
+  if (!measured_ || measured_->profile == nullptr) {
+    if (measured_)
+      coloured(kErrorColour, measured_->error);
+    else
+      ImGui::TextDisabled("%s", kMeasuring);
+    return actions;
+  }
+  const explore::Profile& profile = *measured_->profile;
+  ProfilePlot plot{profile, surface_->planet_radius_m(), nullptr, from_height_m_, to_height_m_};
+  const bool has_sight = measured_->sight && places_.size() == 2;
+  if (has_sight) plot.sight = &*measured_->sight;
+  const std::optional<double> cursor_m = draw_profile_plot(plot, static_cast<double>(room.x), height, widgets);
+  marked_.reset();
+  marked_frame_ = ImGui::GetFrameCount();
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
+  widgets.text("##file", file_, "file to write; ~/ is the home folder");
+  ImGui::SameLine();
+  if (widgets.button("Save CSV")) save(actions);
+  ImGui::SameLine();
+  if (cursor_m) {
+    const paging::ProfilePoint& point = explore::nearest_point(profile, *cursor_m);
+    marked_ = point.place;
+    ImGui::TextUnformatted((explore::measured_length_text(point.distance_m) + ": " +
+                            (point.nodata ? std::string("no data")
+                                          : base::format_display(point.height_m, 1) + " m, slope " +
+                                                base::format_display(point.slope_deg, 1) + "\u00b0") +
+                            "   " + coordinates(point.place))
+                               .c_str());
+  } else {
+    ImGui::TextDisabled("above %s, a point every %s; %s",
+                        paging::describe_datum(surface_->planet().meta()).c_str(),
+                        explore::measured_length_text(profile.step_m).c_str(),
+                        has_sight ? "with the line of sight" : "the line of sight does not follow this path");
+  }
+  return actions;
+}
+
+void MeasurePanel::save(MeasureActions& actions) const {
+  actions.message_is_error = true;
+  if (file_.empty()) {
+    actions.message = "enter a file name for the profile";
+    return;
+  }
+  try {
+    const std::filesystem::path path = in_home(file_);
+    std::error_code ignored;
+    const bool existed = std::filesystem::exists(path, ignored);
+    base::write_file(path, explore::to_csv(*measured_->profile));
+    const std::filesystem::path whole = std::filesystem::absolute(path, ignored);
+    actions.message = (existed ? "profile replaced: " : "profile saved: ") + (ignored ? path : whole).string();
+    actions.message_is_error = false;
+  } catch (const std::exception& e) {
+    actions.message = e.what();
+  }
+}
+
+void MeasurePanel::draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) {
+  take();
+  draw_measure_marks(list, session, {places_, measured_ ? measured_->profile.get() : nullptr, marked()}, x0,
+                     y0);
+}
+
+}  // namespace vpe::window
