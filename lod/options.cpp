@@ -25,6 +25,7 @@ SelectOptions select_options(const core::DrawRequest& request, double planet_rad
   const core::SettingsValues& s = request.settings;
   SelectOptions options;
   options.tolerance_px = s.lod_tolerance_px * request.coarsening;
+  if (request.keeps_levels) options.child_tolerance_px = s.lod_tolerance_px;
   options.exaggeration = s.exaggeration;
   options.max_triangles =
       s.lod_triangles > 0 ? std::min<std::int64_t>(s.lod_triangles, most_triangles) : most_triangles;

@@ -26,6 +26,9 @@ void check(const SelectOptions& options, const SelectView& view) {
   if (std::isnan(options.tolerance_px) || options.tolerance_px < 0.0) {
     throw std::invalid_argument("select: the tolerance is not a number of pixels >= 0");
   }
+  if (std::isnan(options.child_tolerance_px) || options.child_tolerance_px < 0.0) {
+    throw std::invalid_argument("select: the tolerance of children is not a number of pixels >= 0");
+  }
   if (!std::isfinite(options.exaggeration) || options.exaggeration <= 0.0) {
     throw std::invalid_argument("select: the exaggeration is not a positive number");
   }
@@ -204,13 +207,26 @@ class Selector {
     out_.triangles += replacement.triangles;
     for (std::size_t n = 0; n < replacement.size; ++n) {
       const Candidate& c = replacement.members[n];
-      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > accepted_urgency_)) {
+      if (is_full_grid(tree_[c.index], c.variant) ||
+          (!(c.urgency > accepted_urgency_) && may_replace_children(c))) {
         draw(c);
       } else {
         heap_.push_back(c);
         std::push_heap(heap_.begin(), heap_.end(), less_urgent);
       }
     }
+  }
+
+  // See SelectOptions::child_tolerance_px.
+  bool may_replace_children(const Candidate& c) const {
+    if (by_distance_ || !(c.urgency > options_.child_tolerance_px) || !tree_[c.index].has_children) return true;
+    Replacement children;
+    const TileTree::Index first = tree_.first_child(c.index);
+    for (TileTree::Index child = first; child < first + 4; ++child)
+      visit(child, c.mask, c.off_axis_magnification, children);
+    return std::none_of(children.members.begin(),
+                        children.members.begin() + static_cast<std::ptrdiff_t>(children.size),
+                        [&](const Candidate& child) { return child.urgency > options_.child_tolerance_px; });
   }
 
   bool refine_worst() {

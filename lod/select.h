@@ -27,6 +27,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "cull/frustum.h"
@@ -39,6 +40,10 @@ namespace lod {
 struct SelectOptions {
   // >= 0. Smaller: finer, more triangles; 0: only meshes without any error. Not used with the metric kDistance.
   double tolerance_px = 1.0;
+  // A tile beyond this is drawn in place of its children only if those that can be seen are within it. With the
+  // tolerance of another, finer selection here, no tile is more than one level coarser than there, unless
+  // max_triangles is reached. Infinite: `tolerance_px` alone decides. Not used with the metric kDistance.
+  double child_tolerance_px = std::numeric_limits<double>::infinity();
   double exaggeration = 1.0;  // > 0, factor on heights
   // Upper limit of the triangles of the meshes; 0: none. Refining stops before it would be exceeded. Only
   // visible roots, which are the coarsest tiles, may exceed it by themselves.

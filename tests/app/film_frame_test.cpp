@@ -76,6 +76,7 @@ TEST(FilmFrame, EverythingThatAnImageDependsOnIsInItsFingerprint) {
   change("offset", [](Inputs& i) { i.request.view.principal_offset_px.y = 1; });
   change("part", [](Inputs& i) { i.request.view.part.width = 8; });
   change("coarsening", [](Inputs& i) { i.request.coarsening = 2; });
+  change("levels kept", [](Inputs& i) { i.request.keeps_levels = true; });
   change("a region", [](Inputs& i) { i.request.interest = {{1, 2, 3, 4}}; });
   change("its longitude", [](Inputs& i) { i.request.interest = {{9, 2, 3, 4}}; });
   change("its latitude", [](Inputs& i) { i.request.interest = {{1, 9, 3, 4}}; });

@@ -289,6 +289,41 @@ TEST(Select, FinerToleranceOnlyRefines) {
   }
 }
 
+// Errors may shrink by less than a factor of two from level to level: then twice the tolerance is more than a level.
+TEST(Select, WithAToleranceOfChildrenNoTileIsMoreThanALevelCoarser) {
+  Random random(97);
+  int coarser = 0;
+  int two_levels = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const double px = random.log_uniform(0.1, 8);
+    const double factor = random.uniform(1, 6);
+    const core::View view = hostile_view(random, 1);
+    const Selection fine = selected(tolerance(px), rough_tree(), view);
+    SelectOptions options = tolerance(factor * px);
+    const Selection free = selected(options, rough_tree(), view);
+    options.child_tolerance_px = px;
+    const Selection coarse = selected(options, rough_tree(), view);
+    const auto levels_above = [](const Selection& from, const TileKey& tile) {
+      for (const lod::SelectedTile& t : from.tiles)
+        if (lod::contains(t.key, tile)) return tile.level - t.key.level;
+      return -1;
+    };
+    for (const lod::SelectedTile& t : fine.tiles) {
+      const int above = levels_above(coarse, t.key);
+      ASSERT_GE(above, 0) << lod::to_string(t.key);
+      ASSERT_LE(above, 1) << lod::to_string(t.key);
+      coarser += above;
+      two_levels += levels_above(free, t.key) > 1 ? 1 : 0;
+    }
+    for (const lod::SelectedTile& t : coarse.tiles) {
+      if (!rough_tree()[t.index].has_children) continue;
+      ASSERT_LE(t.screen_space_error_px, factor * px);
+    }
+  }
+  EXPECT_GT(coarser, 300);
+  EXPECT_GT(two_levels, 100);
+}
+
 TEST(Select, AtToleranceZeroNothingHasAnError) {
   Random random(43);
   for (int trial = 0; trial < 200; ++trial) {

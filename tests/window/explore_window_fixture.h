@@ -34,9 +34,10 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     setup.display.height = height;
     setup.display.scale = width > 2000 ? 2 : 1;
     setup.sun = app::sun_for;
+    setup.as_drawn = app::as_drawn;
     app::Common common;
     common.memory_mb = 256;
-    setup.make_painter = [common, file = planet_] {
+    setup.make_painter = [common, file = painted_ ? painted_ : planet_] {
       return std::make_unique<app::WindowPainter>(file, common);
     };
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
@@ -45,6 +46,7 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
 
   ExploreSetup extra_;  // options of a test
   std::shared_ptr<const paging::PlanetFile> planet_ = planet();
+  std::shared_ptr<const paging::PlanetFile> painted_;  // the same planet with other storage, or null
 };
 
 }  // namespace vpe::window

@@ -105,6 +105,8 @@ struct DrawRequest {
   // faster. 1 in single images and films; windows raise it while the camera moves (lod/frame_budget.h,
   // lod/progressive_refinement.h).
   double coarsening = 1;
+  // True: with the metric error, coarsening makes triangles at most one level coarser than they are without it.
+  bool keeps_levels = false;
   PagingRequest paging;
 };
 
@@ -119,7 +121,9 @@ struct DrawResult {
   Frame frame;
   FrameStats stats;
   Certificate certificate;
-  bool settled = true;                // no work is in progress that would change the image of this view
+  // Nothing is being loaded that would change the image of this view or, in frames that do not wait, stand in for the
+  // ground beside it.
+  bool settled = true;
   std::vector<MissingTile> missing;   // empty if the image is complete
   std::vector<std::string> failures;  // tiles that cannot be read; a renderer reports each once
 };

@@ -101,6 +101,14 @@ class Resident {
     bytes_ += value.bytes;
     items_[tile].push_back({detail, std::make_unique<Value>(std::move(value)), frame});
   }
+  // Returns the bytes of what was used in a frame or later.
+  std::size_t bytes_since(std::uint64_t frame) const {
+    std::size_t sum = 0;
+    for (const auto& [tile, items] : items_) {
+      for (const Item& item : items) sum += item.frame >= frame ? item.value->bytes : 0;
+    }
+    return sum;
+  }
   // Drops values with the oldest marks until at most `limit` bytes are held. Returns how many were dropped.
   int trim(std::size_t limit, std::uint64_t current_frame) {
     if (bytes_ <= limit) return 0;

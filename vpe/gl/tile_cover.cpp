@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "lod/front_to_back.h"
@@ -284,18 +284,31 @@ void TileCover::use_resident(const core::DrawRequest& request) {
   }
 }
 
-std::vector<lod::TileKey> TileCover::ancestors() const {
-  std::set<std::pair<int, std::int64_t>> seen;  // by level
-  std::vector<lod::TileKey> out;
-  for (const lod::SelectedTile& tile : drawn_.drawn.tiles) {
-    for (int level = tile.key.level - 1; level >= 0; --level) {
-      const lod::TileKey key = lod::ancestor(tile.key, level);
-      if (!seen.insert({level, lod::pack(key)}).second) break;
-      out.push_back(key);
+std::vector<lod::TileKey> TileCover::near_fallbacks() const {
+  std::unordered_set<lod::TileKey, lod::TileKeyHash> drawn;
+  const std::vector<lod::SelectedTile>& cover = drawn_.drawn.tiles;
+  for (std::size_t n = 0; n < cover.size(); ++n)
+    if (hidden_.empty() || hidden_[n] == 0) drawn.insert(cover[n].key);
+  // What is wanted counts, not only what is drawn: below a fallback the next one is needed.
+  std::unordered_set<lod::TileKey, lod::TileKeyHash> refined;
+  for (const std::vector<lod::SelectedTile>* tiles : {&wanted_.tiles, &cover}) {
+    for (const lod::SelectedTile& tile : *tiles) {
+      for (int level = tile.key.level - 1; level >= 0; --level) {
+        if (!refined.insert(lod::ancestor(tile.key, level)).second) break;
+      }
     }
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const lod::TileKey& a, const lod::TileKey& b) { return a.level < b.level; });
+  std::vector<lod::TileKey> out;
+  const auto add = [&](const lod::TileKey& key) {
+    if (drawn.count(key) == 0) out.push_back(key);
+  };
+  for (lod::TileTree::Index root = 0; root < mars::kFaces; ++root) add(planet_.tree()[root].key);
+  for (const lod::TileKey& key : refined) {
+    for (int child = 0; child < 4; ++child) add(lod::child(key, child));
+  }
+  std::sort(out.begin(), out.end(), [](const lod::TileKey& a, const lod::TileKey& b) {
+    return a.level != b.level ? a.level < b.level : lod::morton_position(a) < lod::morton_position(b);
+  });
   return out;
 }
 

@@ -72,8 +72,9 @@ class TileCover {
   // Returns the cover, hidden tiles included.
   const lod::Selection& cover() const { return drawn_.drawn; }
 
-  // Returns the ancestors of the cover, coarsest first.
-  std::vector<lod::TileKey> ancestors() const;
+  // Returns, coarsest first, what stands in for ground that a motion may bring: the roots, the ancestors of what is
+  // wanted or drawn, and their children that are not drawn.
+  std::vector<lod::TileKey> near_fallbacks() const;
 
   // Selects what another view will need and, while hidden tiles are looked for, what will not be hidden there.
   void select_later(const core::View& view, lod::Selection& later);

@@ -17,6 +17,7 @@ double ms_since(Clock::time_point start) {
 
 constexpr std::size_t kMostUpcoming = 3;
 constexpr double kBufferZone = 1.25;       // times the field of view: kept ready round a moving image
+constexpr int kFramesForFallbacks = 20;    // where they do not find room
 constexpr double kGroundUrgency_px = 1e6;  // without it the near plane is a guess
 
 // The views for which pages are loaded ahead, nearest in time first.
@@ -76,10 +77,14 @@ void TileScene::request_pages(const core::DrawRequest& request) {
     if (request.cull_view) request_ground(*request.cull_view);
     if (streamer_.has_requests()) settled_ = false;
   }
+  // Where a motion brings a tile that is not there, its nearest ancestor stands in for all below it: the nearer, the
+  // less of the image becomes coarser. So an image is not at rest before these are there.
+  if (!request.paging.wait && streamer_.has_room_for_coarse(cover_.bytes())) {
+    const bool lacks_any = streamer_.request_coarse(cover_.near_fallbacks());
+    frames_for_fallbacks_ = lacks_any && settled_ ? frames_for_fallbacks_ + 1 : 0;
+    if (frames_for_fallbacks_ > 0 && frames_for_fallbacks_ <= kFramesForFallbacks) settled_ = false;
+  }
   if (streamer_.has_room_for_later(cover_.bytes())) {
-    // Where a motion brings a tile that is not there, its nearest ancestor stands in for all below it: the nearer, the
-    // less of the image becomes coarser.
-    if (!request.paging.wait) streamer_.request_coarse(cover_.ancestors());
     lod::Selection later;
     for (const core::View& view : later_views(request)) {
       cover_.select_later(view, later);

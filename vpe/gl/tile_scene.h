@@ -55,6 +55,7 @@ class TileScene {
   double select_ms_ = 0;
   double load_ms_ = 0;
   bool settled_ = true;
+  int frames_for_fallbacks_ = 0;  // frames in turn that lacked nothing but near fallbacks
 };
 
 }  // namespace vpe::gl

@@ -25,6 +25,7 @@ constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
 
 // Pages for later views are loaded while what this view needs takes up less than this part of the budget.
 constexpr double kRoomForLater = 0.6;
+constexpr double kRoomForCoarse = 0.9;  // they take a few per cent
 
 // Below the camera now and soon, and below the culling camera.
 constexpr std::size_t kGroundTiles = 8;
@@ -233,7 +234,7 @@ const paging::TileHeights* TileStreamer::ground(const lod::TileKey& tile) const 
   return at == ground_.end() ? nullptr : at->second.get();
 }
 
-void TileStreamer::upload(Pager::Loaded page) {
+void TileStreamer::upload(Pager::Loaded page, std::uint64_t frame) {
   const PageKey& key = page.key;
   // Pages that were requested before a change of appearance are of no use.
   switch (key.kind) {
@@ -244,12 +245,12 @@ void TileStreamer::upload(Pager::Loaded page) {
       if (needs_occluders_ && !key.occluders) return;
       GpuMesh mesh = gl::upload(page.value.geometry);
       mesh.occluders = std::move(page.value.occluders);
-      meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame_);
+      meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame);
       break;
     }
     case PageKind::kTexture:
       if (key.shading->flat != shading_->flat || !gl::is_textured(key.tile, *planet_, material_)) return;
-      textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame_);
+      textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame);
       if (const std::string& why = page.value.coarse_because; !why.empty()) {
         if (coarse_colours_.emplace(key.tile, why).second && failures_.count(key.tile) == 0)
           new_failures_.push_back(why);
@@ -291,7 +292,7 @@ TileStreamer::LoadOutcome TileStreamer::load(std::span<const PageKey> pages, std
     if (outcome == Pager::Outcome::kTimeout) return LoadOutcome::kTimeout;
     for (Pager::Loaded& page : pager_.take(kTakeAtOnce)) {
       open.erase(page.key);
-      upload(std::move(page));
+      upload(std::move(page), frame_);
     }
     trim();
     if (pager_.any_failed()) {
@@ -311,7 +312,7 @@ TileStreamer::LoadOutcome TileStreamer::load(std::span<const PageKey> pages, std
 bool TileStreamer::load_now(const PageKey& page) {
   try {
     auto [value, bytes] = load_(page);
-    upload({page, std::move(value), bytes});
+    upload({page, std::move(value), bytes}, frame_);
     return true;
   } catch (const std::bad_alloc&) {
     throw;
@@ -329,7 +330,8 @@ void TileStreamer::take_loaded(double limit_ms) {
   do {
     std::vector<Pager::Loaded> pages = pager_.take(kTakeAtOnce);
     if (pages.empty()) break;
-    for (Pager::Loaded& page : pages) upload(std::move(page));
+    // Those of this view are marked when they are used; those of later views must not outlast them.
+    for (Pager::Loaded& page : pages) upload(std::move(page), frame_ - 1);
   } while (elapsed_ms() < limit_ms);
 }
 
@@ -373,9 +375,16 @@ void TileStreamer::request_frame(const lod::Selection& wanted, std::span<const s
   }
 }
 
+bool TileStreamer::has_room(std::size_t frame_bytes, double part) const {
+  return static_cast<double>(frame_bytes) < part * static_cast<double>(share(kMeshShare + kTextureShare));
+}
+
 bool TileStreamer::has_room_for_later(std::size_t frame_bytes) const {
-  return static_cast<double>(frame_bytes) <
-         kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
+  return has_room(frame_bytes, kRoomForLater);
+}
+
+bool TileStreamer::has_room_for_coarse(std::size_t frame_bytes) const {
+  return has_room(frame_bytes, kRoomForCoarse);
 }
 
 // Nearest tiles first. What is resident is marked as used in `frame`.
@@ -403,23 +412,32 @@ void TileStreamer::request_later(const lod::Selection& selection, const core::Vi
   // Pages of later views count as used in the frame before, so that they leave before those of this one.
   std::vector<PageKey> pages = absent_pages(selection, view, frame_ - 1);
   if (first) pages.insert(pages.begin(), std::move(*first));
+  // More than there is room for would be dropped before it is used, and loaded again for ever.
+  const bool has_mesh_room = meshes_.bytes_since(frame_ - 1) < share(kMeshShare);
+  const bool has_texture_room = textures_.bytes_since(frame_ - 1) < share(kTextureShare);
   for (const PageKey& page : pages) {
+    if (page.kind == PageKind::kMesh && !has_mesh_room) continue;
+    if (page.kind == PageKind::kTexture && !has_texture_room) continue;
     if (!is_readable(page.tile) || !requested_.insert(page).second) continue;
     requests_.push_back({page, -kLater - static_cast<double>(requests_.size())});
   }
 }
 
-void TileStreamer::request_coarse(std::span<const lod::TileKey> tiles) {
+bool TileStreamer::request_coarse(std::span<const lod::TileKey> tiles) {
+  bool any = false;
   for (const lod::TileKey& tile : tiles) {
     if (!is_readable(tile)) continue;
     const TileNeed need = coarse_need(tile);
     std::vector<PageKey> pages{mesh_page(tile, need.mesh)};
     if (need.texture != 0) pages.push_back(texture_page(tile, need.texture));
     for (const PageKey& page : pages) {
-      if (is_resident(page, frame_ - 1) || !requested_.insert(page).second) continue;
+      if (is_resident(page, frame_) || (any_failed_ && pager_.failure(page))) continue;
+      if (!requested_.insert(page).second) continue;
       requests_.push_back({page, -kLater - static_cast<double>(requests_.size())});
+      any = true;
     }
   }
+  return any;
 }
 
 void TileStreamer::send_requests() { pager_.want(std::exchange(requests_, {})); }

@@ -113,11 +113,13 @@ class TileStreamer {
   // Requests `first` and what a later view lacks, nearest tiles first, after all that was requested before.
   void request_later(const lod::Selection& selection, const core::View& view, std::optional<PageKey> first);
   // Requests the coarsest pages of tiles, after all that was requested before, and keeps those that are resident as
-  // those of later views are kept.
-  void request_coarse(std::span<const lod::TileKey> tiles);
+  // if this frame had drawn them. Returns true if a page was requested.
+  bool request_coarse(std::span<const lod::TileKey> tiles);
   bool has_requests() const { return !requests_.empty(); }
   // Returns true if a frame whose meshes and textures take `frame_bytes` leaves room for pages of later views.
   bool has_room_for_later(std::size_t frame_bytes) const;
+  // Returns the same for the coarsest pages, which are small.
+  bool has_room_for_coarse(std::size_t frame_bytes) const;
   void send_requests();
 
   // Drops textures of an earlier shading. For complete frames: incomplete ones may still show them.
@@ -130,12 +132,14 @@ class TileStreamer {
 
  private:
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
+  bool has_room(std::size_t frame_bytes, double part) const;
   bool set_shading(const core::DrawRequest& request);
   bool is_textured(const lod::TileKey& tile) const;
   bool is_resident(const PageKey& page, std::uint64_t frame);
   std::vector<PageKey> absent_pages(const lod::Selection& selection, const core::View& view,
                                     std::uint64_t frame);
-  void upload(Pager::Loaded page);
+  // Marks the page as used in `frame`.
+  void upload(Pager::Loaded page, std::uint64_t frame);
   void record_failure(const PageKey& page, const std::string& why);
 
   std::shared_ptr<const paging::PlanetFile> planet_;

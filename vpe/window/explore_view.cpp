@@ -34,6 +34,7 @@ void ExploreWindow::request_image() {
   request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
   request.draw.interest = session_.all_interest();
   request.draw.coarsening = next->multiplier;
+  request.draw.keeps_levels = true;
   request.draw.paging.wait = false;
   request.draw.paging.upcoming = foreseen_views(next->view);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;

@@ -52,6 +52,7 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   const core::SettingsValues& values = settings.values();
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
+  if (request.keeps_levels) digest.add("keeps levels");
   if (stereo) digest.add("stereo").add(core::to_string(stereo->layout)).add(stereo->eye_base_m);
   return digest.hex();
 }
