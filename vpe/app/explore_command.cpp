@@ -19,11 +19,13 @@
 #include "mars/embedded/data_files.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/shell_word.h"
+#include "vpe/app/command_job.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/core/appearance/gazetteer.h"
+#include "vpe/explore/command_words.h"
 #include "vpe/explore/drawing/project.h"
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/files/preferences.h"
@@ -86,22 +88,27 @@ void add_places(const paging::PlanetMeta& meta, window::ExploreSetup& setup) {
     setup.places = vpe::explore::sights_first(core::read_gazetteer(setup.places_file));
 }
 
+// Returns a command as a line for a shell.
+std::string shell_line(const std::vector<std::string>& words) {
+  std::string line = "vpe";
+  for (const std::string& word : words) line += " " + shell_word(word);
+  return line;
+}
+
 // Returns a command that draws the view of a session.
 std::string command_line(const std::string& planet, const vpe::explore::Session& session) {
-  const mars::Pose& p = session.pose();
-  std::string pose;
-  for (const double value : {p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg})
-    pose += (pose.empty() ? "" : ",") + base::format_number(value);
-  std::string text = "vpe render " + (planet.empty() ? "" : shell_word(planet) + " ") + "--pose " + pose +
-                     " --fov " + base::format_number(session.screen().fov_deg) + " --size " +
-                     std::to_string(session.screen().width) + "x" + std::to_string(session.screen().height);
-  const core::Settings defaults;
-  for (const core::SettingInfo& info : core::Settings::list()) {
-    const std::string value = session.settings().get(info.key).value_or("");
-    if (value != defaults.get(info.key).value_or("") && info.key != "lod.frame_ms")
-      text += " --set " + shell_word(std::string(info.key) + "=" + value);
-  }
-  return text + " -o view.png";
+  vpe::explore::MakeOptions options;
+  options.planet = planet;
+  options.output = "view.png";
+  return shell_line(vpe::explore::image_words(session, options));
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
 }
 
 // Holds the project that is opened first.
@@ -213,7 +220,20 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.as_drawn = as_drawn;
   setup.sun = sun_for;
   setup.threads = common.threads;
-  setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
+  setup.open_planet = [common](const std::string& file) { return open_planet(file, common); };
+  setup.start_job = [common](const std::vector<std::string>& words) {
+    std::vector<std::string> all = words;
+    if (common.memory_mb != Common{}.memory_mb) {
+      all.emplace_back("--memory");
+      all.push_back(std::to_string(common.memory_mb));
+    }
+    if (common.threads > 0) {
+      all.emplace_back("--threads");
+      all.push_back(std::to_string(common.threads));
+    }
+    return std::make_unique<CommandJob>("/proc/self/exe", all);
+  };
+  setup.recent = lines_of(last.recent);
   return setup;
 }
 
@@ -232,6 +252,8 @@ std::string keep_session(const window::ExploreWindow& shown, const std::string& 
   last.overlays.clear();
   for (const std::string& overlay : window::overlays_on(shown.session().settings()))
     last.overlays += (last.overlays.empty() ? "" : "\n") + overlay;
+  last.recent.clear();
+  for (const std::string& recent : shown.recent()) last.recent += (last.recent.empty() ? "" : "\n") + recent;
   last.planet = planet;
   last.pose = shown.session().pose();
   last.drawn_by = shown.state().drawn_by;
@@ -302,6 +324,9 @@ void explore(const ExploreArguments& given, const Common& common) {
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     if (const std::string message = shown.drawings_message(); !message.empty())
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
+    for (const std::vector<std::string>& words : shown.unfinished())
+      std::fprintf(stderr, "vpe: note: stopped with the window; this continues it: %s\n",
+                   shell_line(words).c_str());
     // Flights, logs, hotspots and regions belong to one planet; the appearance stays for the next.
     here.pose = here.log = here.flight = here.hotspots = "";
     here.image.interest.clear();
@@ -314,6 +339,13 @@ void explore(const ExploreArguments& given, const Common& common) {
     if (!error.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", error.c_str());
     planet = shown.next_planet();
     file = recorded_path(shown.next_planet_file());
+    if (const std::filesystem::path next = shown.next_project(); !next.empty()) {
+      here = ExploreArguments{};
+      here.planet = next.string();
+      here.print_settings = false;
+      settings.reset();
+      project = open_project(here);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "mars/geodesy/place_text.h"
 #include "vpe/base/file.h"
@@ -21,8 +22,9 @@ constexpr double kZoomStep = 1.15;  // of the field of view
 
 // Actions of the window while a panorama is entered. Others would move the camera, which is not shown then.
 using Kind = explore::ActionKind;
-constexpr std::array kInside{Kind::kRecord,     Kind::kLeave,      Kind::kRecentreHead, Kind::kMap,
-                             Kind::kHidePanels, Kind::kFullScreen, Kind::kHelp,         Kind::kEnterOverlook};
+constexpr std::array kInside{Kind::kRecord, Kind::kLeave,         Kind::kRecentreHead,
+                             Kind::kMap,    Kind::kHidePanels,    Kind::kFullScreen,
+                             Kind::kHelp,   Kind::kEnterOverlook, Kind::kFiles};
 
 constexpr const char* kNoBookmarks = "there is no folder for bookmarks: HOME is not set";
 
@@ -210,7 +212,7 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kPlaceWaypoint:
       return session_.flights().append(session_.pose(), flight_.ground_speed_m_s(session_));
     case Kind::kLeave:
-      state_.help = false;
+      if (std::exchange(state_.help, false) || std::exchange(state_.files, false)) return {};
       if (guide_.inside() != nullptr) {
         leave_overlook();
         return {};
@@ -231,6 +233,10 @@ std::string ExploreWindow::act(const explore::Action& action) {
       state_.panels = true;
       state_.side_is_open = true;
       search_.focus();
+      return {};
+    case Kind::kFiles:
+      state_.files = !state_.files;
+      if (state_.files) files_.focus();
       return {};
     case Kind::kCopy: return copy_view();
     case Kind::kHelp: state_.help = !state_.help; return {};

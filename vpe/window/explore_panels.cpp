@@ -173,6 +173,7 @@ void ExploreWindow::draw_frame() {
   }
   if (!state_.message.empty()) draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
   if (recorder_.is_recording()) draw_recording_sign(view_area_, display_.scale());
+  if (state_.files) draw_files();
   if (state_.help) draw_explore_help(view_area_, state_.help, widgets_);
   display_.end_frame(std::exchange(capture_, nullptr));
   tip_at_s_ = widgets_.tip_due_s() ? std::optional(now_s() + *widgets_.tip_due_s()) : std::nullopt;
@@ -250,6 +251,9 @@ void ExploreWindow::draw_side() {
   widgets_.toggle("Large map", state_.large_map, "Tab");
   ImGui::SameLine();
   if (widgets_.button("Planet", "Home: the whole planet")) session_.show_planet();
+  ImGui::SameLine();
+  if (widgets_.button("File", "Ctrl+O: open, recent files, save images, make films"))
+    state_.files = !state_.files;
   ImGui::SameLine();
   if (widgets_.button("Help", "F1")) state_.help = !state_.help;
   ImGui::Separator();

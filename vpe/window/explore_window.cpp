@@ -26,6 +26,7 @@ constexpr double kMessage_s = 6;  // for which it is shown
 constexpr double kError_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 constexpr double kKeepSession_s = 2;
+constexpr double kAskJobs_s = 0.25;
 constexpr double kHoverFrame_s = 0.1;  // while only the cursor moves over the view
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
@@ -41,6 +42,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       flight_(setup_.flight_file, setup_.folder),
       places_(setup_.bookmarks),
       search_(explore::PlaceSearch(setup_.places)),
+      files_(setup_.recent),
+      jobs_(setup_.start_job),
       welcome_(search_.places()),
       drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
       project_file_(setup_.project_file),
@@ -60,6 +63,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   state_.panels = setup_.panels;
   state_.side_px = setup_.side_px;
   if (!setup_.greets) welcome_.dismiss();
+  files_.add_recent(setup_.planet_file.string());
+  files_.add_recent(setup_.project_file.string());
   lay_out();
   if (!setup_.session.start)
     session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
@@ -141,6 +146,7 @@ bool ExploreWindow::step(double wait_s) {
                               : moves || !maker_->is_idle() || frames_due_ > 0 ||
                                     live_.state() != lod::RefinementState::kWaiting;
   double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  if (jobs_.is_running()) rest_s = std::min(rest_s, kAskJobs_s);
   if (tip_at_s_) rest_s = std::min(rest_s, std::max(*tip_at_s_ - now_s(), 0.001));
   const std::vector<Event> events = display_.events(event_wait_s(moves, rest_s));
   if (tip_at_s_ && now_s() >= *tip_at_s_) {
@@ -165,6 +171,7 @@ bool ExploreWindow::step(double wait_s) {
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
   last_step_ = now;
   take_planets();
+  if (jobs_.is_running() && now_s() - jobs_asked_s_ >= kAskJobs_s) update_jobs();
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
   keep_work(busy);
@@ -191,9 +198,13 @@ bool ExploreWindow::step(double wait_s) {
 
 void ExploreWindow::take_planets() {
   try {
-    if (auto planet = opener_.take()) next_planet_ = std::move(planet);
+    if (auto planet = opener_.take()) {
+      next_planet_ = std::move(planet);
+      next_project_ = std::exchange(opening_project_, {});
+    }
     if (auto finer = finer_.take()) replace_planet(std::move(*finer));
   } catch (const std::exception& e) {
+    opening_project_.clear();
     show_message(e.what(), true);
   }
 }
@@ -237,10 +248,7 @@ void ExploreWindow::handle(const Event& event) {
   const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
                       event.kind == Event::Kind::kKeyRelease;
   if (event.kind == Event::Kind::kDrop) {
-    if (event.files.empty()) return;
-    const std::string error = opener_.start(event.files.front());
-    if (!error.empty()) return show_message(error, true);
-    show_message("opening " + opener_.file() + "; other files than planet files are converted first");
+    if (!event.files.empty()) open_file(event.files.front());
     return;
   }
   if (guide_.inside() != nullptr && !is_key) {

@@ -30,6 +30,7 @@
 #include "vpe/window/hotspot_guide.h"
 #include "vpe/window/panels/appearance_panel.h"
 #include "vpe/window/panels/drawing_panel.h"
+#include "vpe/window/panels/file_panel.h"
 #include "vpe/window/panels/flight_panel.h"
 #include "vpe/window/panels/map_panel.h"
 #include "vpe/window/panels/measure_panel.h"
@@ -42,6 +43,7 @@
 #include "vpe/window/ui/imgui_helpers.h"
 #include "vpe/window/ui/widgets.h"
 #include "vpe/window/workers/image_maker.h"
+#include "vpe/window/workers/job.h"
 #include "vpe/window/workers/painter.h"
 
 namespace vpe::window {
@@ -75,7 +77,9 @@ struct ExploreSetup : ShownPlanet {
   std::function<ImageRequest(ImageRequest)> as_drawn;
   // Returns the unit, body-fixed direction of the sun.
   std::function<glm::dvec3(const core::SettingsValues&, const mars::Pose&)> sun;
-  OpenPlanet open_planet;  // for files dropped on the window; called on a thread of its own
+  OpenPlanet open_planet;           // for files that are opened or dropped; called on a thread of its own
+  StartJob start_job;               // for what is made of the session; empty: nothing can be made
+  std::vector<std::string> recent;  // files opened last, the newest first
   std::vector<explore::Hotspot> hotspots;
   OpenOverlook open_overlook;  // opens the panorama of a hotspot; required with hotspots
   DisplayOptions display;
@@ -117,6 +121,7 @@ struct WindowState {
   double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
   bool side_is_open = false;  // in a narrow window
   bool help = false;
+  bool files = false;  // the window "File" is open
   bool large_map = false;
   explore::MapStyle map_style = explore::MapStyle::kElevation;
   std::string message;  // about the last action or error
@@ -199,6 +204,12 @@ class ExploreWindow {
   // Returns the planet that was dropped on the window and is to be shown next, or null.
   const std::shared_ptr<const paging::PlanetFile>& next_planet() const { return next_planet_; }
   const std::string& next_planet_file() const { return opener_.file(); }
+  // Returns the project that next_planet() belongs to, or an empty path.
+  const std::filesystem::path& next_project() const { return next_project_; }
+  // Returns the files opened last, the newest first.
+  const std::vector<std::string>& recent() const { return files_.recent(); }
+  // Returns the commands, as words, of what is still being made and stops with the window.
+  std::vector<std::vector<std::string>> unfinished() const;
   // Saves a flight with unsaved changes to a new file. Returns a message about it for the time after the window
   // was closed, or "" if there is no such flight.
   std::string exit_message();
@@ -289,6 +300,14 @@ class ExploreWindow {
   void keep_work(bool is_busy);
   void restore_flight(const std::filesystem::path& copy);
   void set_recording(bool on, const std::filesystem::path& file = {});
+  // explore_files.cpp:
+  void draw_files();
+  void open_file(const std::string& name);
+  void open_flight(const std::filesystem::path& file);
+  void open_project_file(const std::filesystem::path& file);
+  void make(const MakeRequest& request);
+  void start_job(std::string title, const std::vector<std::string>& words, const std::filesystem::path& result);
+  void update_jobs();
   // explore_project.cpp:
   std::string open_project();
   bool has_project() const { return !project_file_.empty(); }
@@ -314,6 +333,9 @@ class ExploreWindow {
   AppearancePanel appearance_;
   PlacesPanel places_;
   SearchBox search_;
+  FilePanel files_;
+  JobList jobs_;
+  double jobs_asked_s_ = 0;
   Welcome welcome_;
   DrawingPanel drawing_;
   explore::BookmarkList project_bookmarks_;
@@ -343,6 +365,8 @@ class ExploreWindow {
   SessionRecorder recorder_;
   core::RgbImage last_image_;  // pixels of drawn_
   PlanetOpener opener_;
+  std::filesystem::path opening_project_;  // whose planet is being opened
+  std::filesystem::path next_project_;
   PlanetMaker finer_;
   std::shared_ptr<const paging::PlanetFile> next_planet_;
   bool saves_image_ = false;  // once the final image is there

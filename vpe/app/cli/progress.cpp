@@ -2,9 +2,26 @@
 
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
+
+#include "vpe/base/number.h"
 
 namespace vpe::app {
+
+namespace {
+
+std::chrono::milliseconds pause_off_terminals() {
+  constexpr std::chrono::milliseconds kUsual(15000);
+  const char* text = std::getenv(kProgressVariable);
+  const auto seconds = text == nullptr ? std::nullopt : base::parse_number(text);
+  if (!seconds || !(*seconds >= 0.1 && *seconds <= 3600)) return kUsual;
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * *seconds));
+}
+
+}  // namespace
 
 ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
@@ -16,7 +33,7 @@ void ProgressLine::show(const std::string& what, double fraction) {
   if (quiet_) return;
   if (first_fraction_ < 0) first_fraction_ = fraction;
   const auto now = Clock::now();
-  const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(15000);
+  const auto pause = terminal_ ? std::chrono::milliseconds(200) : pause_off_terminals();
   // Off a terminal, short work prints nothing.
   if (now - (shown_ || terminal_ ? last_ : start_) < pause) return;
   last_ = now;

@@ -6,7 +6,11 @@
 
 namespace vpe::app {
 
-// Shows nothing when quiet. On a terminal it rewrites one line; elsewhere it prints a line every 15 seconds.
+// Names the environment variable with the seconds between two lines that are not on a terminal, 0.1 to 3600.
+inline constexpr const char* kProgressVariable = "VPE_PROGRESS_S";
+
+// Shows nothing when quiet. On a terminal it rewrites one line; elsewhere it prints a line every 15 seconds, or as
+// often as kProgressVariable says.
 //
 // Typical usage:
 //   ProgressLine line(common.quiet);

@@ -1,6 +1,7 @@
 #include "vpe/app/cli/subprocess.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -29,10 +30,16 @@ int memory_file() {
 
 }  // namespace
 
-Subprocess::Subprocess(std::vector<std::string> words, const std::filesystem::path& folder) {
+Subprocess::Subprocess(std::vector<std::string> words, const std::filesystem::path& folder,
+                       std::vector<std::string> environment) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  // Of two variables of one name the first counts.
+  std::vector<char*> variables;
+  for (std::string& variable : environment) variables.push_back(variable.data());
+  for (char** variable = environ; *variable != nullptr; ++variable) variables.push_back(*variable);
+  variables.push_back(nullptr);
 
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot make a pipe", errno);
@@ -48,7 +55,8 @@ Subprocess::Subprocess(std::vector<std::string> words, const std::filesystem::pa
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   posix_spawnattr_setpgroup(&attributes, 0);
-  const int error = ::posix_spawnp(&pid_, arguments[0], &actions, &attributes, arguments.data(), environ);
+  const int error =
+      ::posix_spawnp(&pid_, arguments[0], &actions, &attributes, arguments.data(), variables.data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   ::close(ends[0]);
@@ -75,15 +83,32 @@ bool Subprocess::write(std::span<const std::uint8_t> bytes) {
 }
 
 bool Subprocess::finish() {
-  if (pid_ <= 0) return succeeded_;
   if (pipe_ >= 0) ::close(pipe_);
   pipe_ = -1;
-  int status = 0;
+  if (pid_ <= 0) return succeeded_;
+  int status = -1;  // no exit
   while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
+  take_status(status);
+  return succeeded_;
+}
+
+bool Subprocess::is_running() {
+  if (pid_ <= 0) return false;
+  int status = -1;  // no exit
+  const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return true;
+  take_status(status);
+  return false;
+}
+
+void Subprocess::interrupt() {
+  if (pid_ > 0) ::kill(pid_, SIGINT);
+}
+
+void Subprocess::take_status(int status) {
   pid_ = -1;
   succeeded_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  return succeeded_;
 }
 
 std::string Subprocess::text_of(int file) {

@@ -21,8 +21,10 @@ namespace vpe::app {
 class Subprocess {
  public:
   // Starts words[0], found on PATH, with the other words as arguments, in a folder; an empty path is the current
-  // one. Throws std::runtime_error with the system's message.
-  explicit Subprocess(std::vector<std::string> words, const std::filesystem::path& folder = {});
+  // one. `environment` has variables, "NAME=value", beside those of this process. Throws std::runtime_error with
+  // the system's message.
+  explicit Subprocess(std::vector<std::string> words, const std::filesystem::path& folder = {},
+                      std::vector<std::string> environment = {});
   ~Subprocess();
   Subprocess(const Subprocess&) = delete;
   Subprocess& operator=(const Subprocess&) = delete;
@@ -33,6 +35,11 @@ class Subprocess {
   // Closes the program's input and waits for its end. Returns true when it exited with status 0.
   [[nodiscard]] bool finish();
 
+  // Returns true until the program has ended. Does not wait.
+  [[nodiscard]] bool is_running();
+  // Sends the program SIGINT, as Ctrl-C does. Does not wait.
+  void interrupt();
+
   // Return what the program has written to standard output and to standard error so far, without the newlines
   // at the end.
   std::string output() const { return text_of(output_); }
@@ -40,6 +47,7 @@ class Subprocess {
 
  private:
   static std::string text_of(int file);
+  void take_status(int status);
 
   int output_ = -1;
   int errors_ = -1;

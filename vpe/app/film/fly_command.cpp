@@ -198,14 +198,14 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
             bool illustration, const std::optional<SunStatement>& sun, const FilmPlan& plan) {
   const std::vector<FilmFrame>& frames = session.frames();
   if (common.json) {
-    nlohmann::json json = summary_json(frames, seconds);
-    json["output"] = arguments.output;
-    json["backend"] = backend_text(plan, frames, *arguments.image.backend);
-    json["illustration"] = illustration;
-    json["sun"] = to_json(sun);
-    json["manifest"] =
+    nlohmann::json summary = summary_json(frames, seconds);
+    summary["output"] = arguments.output;
+    summary["backend"] = backend_text(plan, frames, *arguments.image.backend);
+    summary["illustration"] = illustration;
+    summary["sun"] = to_json(sun);
+    summary["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
-    print_json(json);
+    print_json(summary);
   }
   if (count(frames).failed > 0)
     throw std::runtime_error(failure_text(session.kind(), arguments.output, frames));

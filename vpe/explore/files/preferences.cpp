@@ -117,6 +117,8 @@ const core::KeyRegistry<LastSession>& session_keys() {
        "width of the side panel; 0 = the usual one"},
       {"last.overlays", Declare::text<&S::overlays>("settings, one a line", no_problem), "",
        "what was drawn over images, one setting a line"},
+      {"last.recent", Declare::text<&S::recent>("names of files, one a line", no_problem), "",
+       "files opened last, one a line"},
       {"last.planet", Declare::text<&S::planet>("the name of a planet file, or nothing", no_problem), "",
        "last planet shown"},
       {"last.pose", Declare::pose<&S::pose>(), "", "last pose of the camera"},

@@ -59,6 +59,7 @@ struct LastSession {
   bool panels = true;    // map, panels and figures are shown
   double side_px = 0;    // width of the side panel at scale 1; 0: the usual one
   std::string overlays;  // settings of overlays that are on, one a line, as "overlay.scale=on"
+  std::string recent;    // paths of the files opened last, one a line, the newest first
 };
 
 // Return the keys of the two files.

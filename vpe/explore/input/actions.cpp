@@ -38,6 +38,7 @@ constexpr std::array kActions{
     ActionInfo{K::kFullScreen, "full-screen", "full screen, or window"},
     ActionInfo{K::kScreenshot, "screenshot", "save an image of the view"},
     ActionInfo{K::kSearch, "search", "search a place by name or coordinates"},
+    ActionInfo{K::kFiles, "files", "open a file; make images, films and panoramas"},
     ActionInfo{K::kCopy, "copy", "copy the place under the cursor, and a command"},
     ActionInfo{K::kHelp, "help", "show or hide this help"},
 };

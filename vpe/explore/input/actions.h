@@ -35,6 +35,7 @@ enum class ActionKind {
   kFullScreen,
   kScreenshot,
   kSearch,
+  kFiles,
   kCopy,
   kHelp,
 };

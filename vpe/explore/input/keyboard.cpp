@@ -65,6 +65,7 @@ std::vector<PressedBinding> make_pressed() {
       {{Key::kF12, kAlone}, {A::kScreenshot}},
       {{Key::kSlash, kAlone}, {A::kSearch}},
       {{Key::kF, kCtrl}, {A::kSearch}},
+      {{Key::kO, kCtrl}, {A::kFiles}},
       {{Key::kC, kCtrl}, {A::kCopy}},
       {{Key::kF1, kAlone}, {A::kHelp}},
   };

@@ -57,8 +57,7 @@ FlightActions FlightPanel::draw(explore::Session& session, bool is_recording, Wi
   ImGui::SameLine();
   bool records = is_recording;
   if (widgets.toggle("Record", records,
-                     "L: record the session as a flight. Zoom, backend, stereo and window size are recorded as "
-                     "comments, which playback skips."))
+                     "L: record the session as a flight, with zoom, backend, stereo and the size of the view"))
     actions.record = records;
   draw_player(session, widgets);
   ImGui::Separator();
@@ -221,6 +220,14 @@ void FlightPanel::open(explore::Session& session, FlightActions& actions) {
   } catch (const std::exception& e) {
     report(actions, e.what());
   }
+}
+
+FlightActions FlightPanel::open_file(const std::string& file, explore::Session& session) {
+  FlightActions actions;
+  const std::string before = std::exchange(file_, file);
+  open(session, actions);
+  if (actions.message_is_error) file_ = before;
+  return actions;
 }
 
 void FlightPanel::save(explore::FlightEditor& editor, FlightActions& actions) {

@@ -28,6 +28,9 @@ class FlightPanel {
   // Draws the panel inside its tab.
   FlightActions draw(explore::Session& session, bool is_recording, Widgets& widgets);
 
+  // Opens a flight from a file, unless the present one has unsaved changes.
+  FlightActions open_file(const std::string& file, explore::Session& session);
+
   // Sets the copies of unsaved flights that a button offers while there is no flight.
   void offer(std::vector<std::filesystem::path> abandoned) { abandoned_ = std::move(abandoned); }
 
