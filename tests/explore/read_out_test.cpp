@@ -62,6 +62,15 @@ TEST_F(ReadOuts, BothLongitudesAndTheirTexts) {
   EXPECT_EQ(text_of(west, "Range"), "");
 }
 
+// Folders are those of the machine that built the planet.
+TEST_F(ReadOuts, SourcesAreNamedByTheirFiles) {
+  EXPECT_EQ(short_source_name("/home/someone/data/gale ctx.tif"), "gale ctx.tif");
+  EXPECT_EQ(short_source_name("https://example.org/mola.tif"), "mola.tif");
+  EXPECT_EQ(short_source_name("NETCDF:/data/x.nc:z"), "x.nc:z");
+  EXPECT_EQ(short_source_name("embedded-detail"), "embedded-detail");
+  EXPECT_EQ(short_source_name("folder/"), "folder/");
+}
+
 TEST_F(ReadOuts, NamesTheSourceAndItsError) {
   const ReadOut r = read_out_at(surface(), mars::lon_lat(test_support::kPatch));
   EXPECT_EQ(r.source, "fake");

@@ -15,6 +15,11 @@ double east_of(double lon_deg) {
 
 }  // namespace
 
+std::string short_source_name(const std::string& source) {
+  const std::size_t slash = source.find_last_of('/');
+  return slash == std::string::npos || slash + 1 == source.size() ? source : source.substr(slash + 1);
+}
+
 ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double exaggeration) {
   ReadOut out;
   out.at = paging::query(surface, place);
@@ -26,10 +31,11 @@ ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double e
     return meta.sources.at(static_cast<std::size_t>(source));
   };
   if (out.at.source) {
-    out.source = info(*out.at.source).name;
+    out.source = short_source_name(info(*out.at.source).name);
     out.source_spacing_m = info(*out.at.source).resolution_m;
   } else if (!out.at.nodata) {
-    for (const int s : out.at.tile_sources) out.source += (out.source.empty() ? "" : " or ") + info(s).name;
+    for (const int s : out.at.tile_sources)
+      out.source += (out.source.empty() ? "" : " or ") + short_source_name(info(s).name);
   }
   const glm::dvec3 direction = mars::direction(place);
   out.point_m = surface.at(direction, exaggeration).radius_m * direction;

@@ -14,7 +14,8 @@ struct ReadOut {
   paging::PlaceAnswer at;   // longitude in (-180, 180]
   double lon_east_deg = 0;  // the same longitude in [0, 360)
   std::string datum;        // of the elevation, paging::describe_datum()
-  std::string source;  // name of PlaceAnswer::source, or of all of the tile, joined by " or "; may be empty
+  // short_source_name() of PlaceAnswer::source, or of all of the tile, joined by " or "; may be empty.
+  std::string source;
   double source_spacing_m = 0;    // of the posts of PlaceAnswer::source; 0: not known
   bool illustration = false;      // the planet is synthetic
   glm::dvec3 point_m{0, 0, 0};    // on the ground as drawn, body-fixed, from the planet's centre
@@ -30,6 +31,9 @@ std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3
 
 // Reads out a place, for example on a map.
 ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double exaggeration = 1.0);
+
+// Returns the name of a source without folders, which are those of the machine that built the planet.
+std::string short_source_name(const std::string& source);
 
 // Describes a line for display, such as "Elevation" and "-2103.4 m (areoid)".
 struct ReadOutLine {
