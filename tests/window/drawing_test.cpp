@@ -270,6 +270,26 @@ TEST_F(DrawingTest, UnsavedDrawingsHaveACopyAndProjectsReturn) {
   EXPECT_FALSE(window_->drawing().drawings().is_changed());
   ASSERT_EQ(window_->project().bookmarks.size(), 1U);
   EXPECT_EQ(window_->project().bookmarks[0].key, 3);
+  window_->session().put(pose);
+  iterate(3);
+  click("Places");
+  click("Keep this view##project");
+  ASSERT_EQ(window_->project().bookmarks.size(), 2U);
+  click("##project view 1");
+  glfwSetClipboardString(window_->display().handle(), "the rim");
+  with_control("a");
+  with_control("v");
+  key("Return");
+  EXPECT_EQ(window_->project().bookmarks[1].name, "the rim");
+  window_->session().put({50, 20, 300e3, 30, -40, 0});
+  click("Go##project view 1");
+  settle();
+  EXPECT_NEAR(window_->session().pose().lon_deg, 12, 1e-9);
+  click("x##project view 1");
+  iterate(3);
+  EXPECT_EQ(window_->project().bookmarks.size(), 1U);
+  with_control("z");
+  EXPECT_EQ(window_->project().bookmarks.size(), 2U);
   with_control("s");
   EXPECT_EQ(window_->state().message, "project: " + file.string());
 }

@@ -41,6 +41,16 @@ std::string BookmarkList::put(const Bookmark& bookmark) {
   return "";
 }
 
+std::string BookmarkList::rename(std::size_t index, std::string_view name) {
+  Bookmarks checked;
+  for (const Bookmark& bookmark : all_)
+    if (std::string problem = checked.put(bookmark); !problem.empty()) return problem;
+  if (std::string problem = checked.rename(index, name); !problem.empty()) return problem;
+  if (checked.all()[index].name == all_[index].name) return "";
+  change(checked.all(), "rename " + bookmark_name(all_[index]));
+  return "";
+}
+
 bool BookmarkList::remove(std::size_t index) {
   if (index >= all_.size()) return false;
   std::vector<Bookmark> next = all_;

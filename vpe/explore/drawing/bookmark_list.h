@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vpe/explore/drawing/undo_steps.h"
@@ -22,6 +23,8 @@ class BookmarkList : public UndoStore {
   // Stores a bookmark. Replaces the one with the same key, or, without a key, the one with the same name;
   // otherwise appends it. Returns what is wrong, or ""; a bad bookmark changes nothing.
   [[nodiscard]] std::string put(const Bookmark& bookmark);
+  // Renames a bookmark, given by its position. Returns what is wrong, or ""; then nothing is changed.
+  [[nodiscard]] std::string rename(std::size_t index, std::string_view name);
   // Removes a bookmark by its position. Returns false if there is none.
   bool remove(std::size_t index);
   // Replaces all, without undo, as saved ones.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "vpe/explore/drawing/bookmark_list.h"
 #include "vpe/explore/files/bookmarks.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/ui/widgets.h"
@@ -17,7 +18,8 @@ struct PlacesActions {
   bool message_is_error = false;
 };
 
-// Draws the bookmarks of a file as a list to go to, rename and delete. For the window's thread.
+// Draws the bookmarks of the open project and those of a file as lists to go to, rename and delete. For the window's
+// thread.
 class PlacesPanel {
  public:
   // An empty path: there is no folder for bookmarks.
@@ -26,20 +28,29 @@ class PlacesPanel {
   // Reads the file again at the next draw().
   void reload() { is_read_ = false; }
 
-  // Draws the panel inside its tab.
-  PlacesActions draw(const explore::Session& session, Widgets& widgets);
+  // Draws the panel inside its tab. `project` has the bookmarks of the project that is open; null: none is.
+  PlacesActions draw(const explore::Session& session, explore::BookmarkList* project, Widgets& widgets);
 
  private:
+  // Describes what was pressed in a row. Two at once are not possible.
+  struct RowActions {
+    bool goes = false;
+    bool removes = false;
+    std::optional<std::string> name;  // new
+  };
+
   void read();
   void save(PlacesActions& actions);
-  void draw_row(std::size_t index, PlacesActions& actions, Widgets& widgets);
+  void draw_project(const explore::Session& session, explore::BookmarkList& project, PlacesActions& actions,
+                    Widgets& widgets);
+  void draw_file(const explore::Session& session, PlacesActions& actions, Widgets& widgets);
+  static RowActions draw_row(const explore::Bookmark& bookmark, const std::string& id, Widgets& widgets);
 
   std::filesystem::path file_;
   bool is_read_ = false;
   int last_frame_ = -2;                          // ImGui's number of the frame that was drawn last
   std::optional<explore::Bookmarks> bookmarks_;  // nullopt: they cannot be read
   std::string error_;
-  std::optional<std::size_t> removed_;  // in this frame
 };
 
 }  // namespace vpe::window
