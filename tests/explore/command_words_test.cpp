@@ -13,9 +13,9 @@ namespace {
 using Words = std::vector<std::string>;
 
 bool has_pair(const Words& words, const std::string& first, const std::string& second) {
-  const auto at = std::adjacent_find(words.begin(), words.end(), [&](const std::string& a, const std::string& b) {
-    return a == first && b == second;
-  });
+  const auto at =
+      std::adjacent_find(words.begin(), words.end(),
+                         [&](const std::string& a, const std::string& b) { return a == first && b == second; });
   return at != words.end();
 }
 

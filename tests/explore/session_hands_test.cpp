@@ -96,7 +96,7 @@ TEST(SessionThrow, ARestASlowDragAndNoTimesThrowNothing) {
 TEST(SessionThrow, IsSwitchedOffByItsOption) {
   SessionOptions options;
   options.start = kAbove;
-  options.throws = false;
+  options.mouse.throws = false;
   Session session(test_support::session_surface(), options);
   session.resize(1280, 720);
   session.release(drag(session));
@@ -249,7 +249,7 @@ TEST(SessionArrival, AViewThatWasTiltedByHandKeepsItsPitch) {
 TEST(SessionArrival, IsSwitchedOffByItsOption) {
   SessionOptions options;
   options.start = mars::Pose{20, 10, 20'000, 25, -90, 0};
-  options.tilt_on_arrival = false;
+  options.mouse.tilt_on_arrival = false;
   Session session(test_support::session_surface(), options);
   session.resize(1280, 720);
   for (int n = 0; n < 30; ++n) session.wheel({700, 400}, 1);

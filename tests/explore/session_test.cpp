@@ -96,7 +96,7 @@ TEST(Session, ADoubleClickCentresThePlaceForAnyDirectionOfTheHead) {
 TEST(Session, AnInvertedWheelZoomsOut) {
   SessionOptions options;
   options.start = kOver;
-  options.invert_wheel = true;
+  options.mouse.invert_wheel = true;
   Session session(surface(), options);
   const double before_m = session.height_m();
   session.wheel({640, 360}, 1);
@@ -109,7 +109,7 @@ TEST(Session, AFasterMouseTiltsFurther) {
   options.start = kOver;
   double rotated_deg[2];
   for (const double speed : {1.0, 2.0}) {
-    options.mouse_speed = speed;
+    options.mouse.speed = speed;
     Session session(surface(), options);
     session.press(MouseUse::kTilt, {640, 360});
     session.drag({640, 350});

@@ -155,7 +155,7 @@ TEST_F(FilesTest, FilesOfEveryKindAreOpened) {
   EXPECT_TRUE(window_->state().message_is_error);
   const fs::path flight = folder_ / "a.flight";
   std::ofstream(flight) << "flight 1\nat 0 pose lon=10 lat=20 alt=500000 yaw=0 pitch=-60\n"
-                           << "at 9 pose lon=12 lat=20 alt=500000 yaw=0 pitch=-60\n";
+                        << "at 9 pose lon=12 lat=20 alt=500000 yaw=0 pitch=-60\n";
   enter(flight.string());
   wait_for("flight: ");
   ASSERT_NE(window_->session().flights().editor(), nullptr);
@@ -173,8 +173,67 @@ TEST_F(FilesTest, FilesOfEveryKindAreOpened) {
   for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(window_->next_planet(), planet_);
   EXPECT_EQ(opened, other.string());
-  EXPECT_EQ(window_->recent(), (Words{other.string(), panorama.string(), flight.string(), "/old/one.vpe",
-                                      "/old/two.flight"}));
+  EXPECT_EQ(window_->recent(),
+            (Words{other.string(), panorama.string(), flight.string(), "/old/one.vpe", "/old/two.flight"}));
+}
+
+// A planet file is built of a raster by a command beside the window, and opened then.
+TEST_F(FilesTest, ARasterIsBuiltWithProgressAndCanBeStopped) {
+  use_fake_jobs();
+  std::string opened;
+  extra_.builds_first = [](const std::string& file) { return file.ends_with(".tif"); };
+  extra_.open_planet = [this, &opened](const std::string& file) {
+    opened = file;
+    return planet_;
+  };
+  const fs::path raster = folder_ / "dem.tif";
+  std::ofstream(raster) << "-";
+  open(1280, 720);
+  open_files();
+  enter(raster.string());
+  ASSERT_EQ(commands_, (std::vector<Words>{{"info", raster.string()}}));
+  EXPECT_EQ(window_->unfinished(), commands_);
+  iterate(5);
+  click("file/Stop##job 0");
+  EXPECT_TRUE(fake_->is_stopped);
+  fake_->state = {false, 0.2, "interrupted", true};
+  wait_for("dem.tif: stopped");
+  EXPECT_EQ(opened, "");
+
+  fake_->state = {true, 0.4, "building: 40 %", false};
+  enter(raster.string());
+  ASSERT_EQ(commands_.size(), 2U);
+  fake_->state = {false, 0.4, "vpe: the disk is full", true};
+  wait_for("the disk is full");
+  EXPECT_EQ(opened, "");
+
+  fake_->state = {true, 0.4, "building: 40 %", false};
+  enter(raster.string());
+  ASSERT_EQ(commands_.size(), 3U);
+  fake_->state = {false, 1, "", false};
+  for (int n = 0; n < 1000 && window_->next_planet() == nullptr; ++n) iterate(1);
+  EXPECT_EQ(window_->next_planet(), planet_);
+  EXPECT_EQ(opened, raster.string());
+  EXPECT_EQ(window_->recent().front(), raster.string());
+}
+
+TEST_F(FilesTest, PlanetsAreListed) {
+  use_fake_jobs();
+  extra_.builds_first = [](const std::string& file) { return file.empty(); };
+  extra_.open_planet = [this](const std::string&) { return planet_; };
+  std::ofstream(folder_ / "a.vpe") << "-";
+  open(1280, 720);
+  open_files();
+  click("file/##Planets");
+  iterate(3);
+  click("file/##Planets=the embedded Mars");
+  EXPECT_EQ(commands_, (std::vector<Words>{{"info"}}));
+  click("file/##Planets");
+  iterate(3);
+  click("file/##Planets=a.vpe##0");
+  for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
+  EXPECT_EQ(window_->next_planet_file(), folder_ / "a.vpe");
+  EXPECT_EQ(commands_.size(), 1U);
 }
 
 TEST_F(FilesTest, AProjectIsOpenedWithItsPlanet) {
@@ -198,6 +257,40 @@ TEST_F(FilesTest, AProjectIsOpenedWithItsPlanet) {
   for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(opened, "/planets/q.vpe");
   EXPECT_EQ(window_->next_project(), file);
+}
+
+TEST_F(FilesTest, PreferencesTakeEffectAndAreKept) {
+  const fs::path file = folder_ / "config/explore.toml";
+  extra_.preferences_file = file;
+  open(1280, 720);
+  const std::string budget = window_->session().settings().get("lod.frame_ms").value_or("");
+  open_files();
+  click("file/Preferences");
+  iterate(3);
+  click("preferences/##mouse.invert_wheel");
+  iterate(3);
+  EXPECT_TRUE(explore::read_preferences(file).invert_wheel);
+  const double alt_m = window_->session().pose().alt_m;
+  click("preferences/##draw.budget_ms");
+  control("a");
+  glfwSetClipboardString(window_->display().handle(), "70");
+  control("v");
+  key("Return");
+  iterate(5);
+  EXPECT_EQ(explore::read_preferences(file).draw_budget_ms, 70);
+  EXPECT_EQ(window_->session().settings().get("lod.frame_ms"), budget == "40" ? "70" : budget);
+  key("Escape");
+  EXPECT_FALSE(window_->state().preferences);
+  move(800, 300);
+  robot_->wheel(1);
+  settle();
+  EXPECT_GT(window_->session().pose().alt_m, alt_m);  // forward is away now
+  open_files();
+  click("file/Preferences");
+  iterate(3);
+  click("preferences/As at first");
+  iterate(3);
+  EXPECT_EQ(explore::read_preferences(file), explore::Preferences{});
 }
 
 // The image that the program makes is the one on the screen.

@@ -15,7 +15,9 @@ class FinerPlanet : public ExploreWindowTest {
   void open_coarse() {
     planet_ = test_support::build_fake(folder_ / "coarse.vpe",
                                        test_support::FakeElevation(test_support::bumpy_height), 600'000);
-    extra_.make_finer = [this](const std::stop_token& stop) -> std::optional<ShownPlanet> {
+    extra_.make_finer = [this](const std::stop_token& stop,
+                               const TellProgress& tell) -> std::optional<ShownPlanet> {
+      tell(0.25);
       begun_ = true;
       while (!may_end_) {
         if (stop.stop_requested()) {
@@ -69,6 +71,21 @@ TEST_F(FinerPlanet, TheCameraStaysAboveItsGround) {
   may_end_ = true;
   for (int n = 0; n < 2000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
   EXPECT_GT(window_->session().height_m(), 0);
+}
+
+TEST_F(FinerPlanet, TheWindowFileTellsProgressAndStopsIt) {
+  open_coarse();
+  const auto is_shown = [this] { return window_->widgets().places().count("file/Stop##planet") > 0; };
+  ASSERT_EQ(window_->act({explore::ActionKind::kFiles}), "");
+  for (int n = 0; n < 1000 && !is_shown(); ++n) iterate(1);
+  iterate(5);
+  click("file/Stop##planet");
+  for (int n = 0; n < 1000 && !stopped_; ++n) iterate(1);
+  EXPECT_TRUE(stopped_);
+  for (int n = 0; n < 1000 && is_shown(); ++n) iterate(1);
+  EXPECT_FALSE(is_shown());
+  EXPECT_FALSE(window_->state().message_is_error);
+  EXPECT_NE(&window_->session().surface().planet(), finer_.get());
 }
 
 TEST_F(FinerPlanet, ClosingTheWindowStopsIt) {

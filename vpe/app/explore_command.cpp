@@ -165,6 +165,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
     setup.flight = read_flight(arguments.flight);
   setup.bookmarks = vpe::explore::explore_files().bookmarks;
+  setup.preferences_file = vpe::explore::explore_files().preferences;
   setup.state = vpe::explore::explore_files().session.parent_path();
   if (!arguments.hotspots.empty()) {
     const vpe::explore::ParsedHotspots parsed = vpe::explore::load_hotspots(arguments.hotspots);
@@ -182,10 +183,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
     overlook.invert_wheel = invert_wheel;
     return overlook;
   };
-  setup.session.mouse_speed = preferences.mouse_speed;
-  setup.session.invert_wheel = preferences.invert_wheel;
-  setup.session.throws = preferences.throws;
-  setup.session.tilt_on_arrival = preferences.tilt_on_arrival;
+  setup.session.mouse = vpe::explore::mouse_choices(preferences);
   setup.panels = last.panels;
   setup.side_px = last.side_px;
   setup.session.settings = make_settings(arguments.image);
@@ -221,6 +219,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.sun = sun_for;
   setup.threads = common.threads;
   setup.open_planet = [common](const std::string& file) { return open_planet(file, common); };
+  setup.builds_first = [](const std::string& file) { return file.empty() || is_raster_argument(file); };
   setup.start_job = [common](const std::vector<std::string>& words) {
     std::vector<std::string> all = words;
     if (common.memory_mb != Common{}.memory_mb) {
@@ -303,8 +302,9 @@ void explore(const ExploreArguments& given, const Common& common) {
     is_first = false;
     static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common);
     if (std::exchange(is_coarse, false)) {
-      setup.make_finer = [common](const std::stop_token& stop) -> std::optional<window::ShownPlanet> {
-        auto complete = build_embedded_planet(common, stop);
+      setup.make_finer = [common](const std::stop_token& stop,
+                                  const window::TellProgress& tell) -> std::optional<window::ShownPlanet> {
+        auto complete = build_embedded_planet(common, stop, tell);
         if (complete == nullptr) return std::nullopt;
         return shown_planet(std::move(complete), common);
       };

@@ -21,7 +21,8 @@ void add_settings(const Session& session, const Keeps& keeps, std::vector<std::s
   for (const core::SettingInfo& info : core::Settings::list()) {
     const std::string value = session.settings().get(info.key).value_or("");
     // The time of an image is a matter of windows.
-    if (value == defaults.get(info.key).value_or("") || info.key == "lod.frame_ms" || !keeps(info.key)) continue;
+    if (value == defaults.get(info.key).value_or("") || info.key == "lod.frame_ms" || !keeps(info.key))
+      continue;
     words.emplace_back("--set");
     words.push_back(std::string(info.key) + "=" + value);
   }
@@ -98,7 +99,8 @@ std::vector<std::string> film_words(const Session& session, const std::string& f
 
 std::vector<std::string> panorama_words(const Session& session, const MakeOptions& options) {
   std::vector<std::string> words = command("panorama", options);
-  words.push_back("--at=" + format_number(session.pose().lon_deg) + "," + format_number(session.pose().lat_deg));
+  words.push_back("--at=" + format_number(session.pose().lon_deg) + "," +
+                  format_number(session.pose().lat_deg));
   words.emplace_back("--altitude=" + format_number(session.pose().alt_m));
   if (options.width_px > 0) {
     words.emplace_back("--width");

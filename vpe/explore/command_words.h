@@ -17,8 +17,8 @@ struct MakeOptions {
   std::string output;  // file to write
   int width_px = 0;    // 0: that of the view
   int height_px = 0;
-  bool has_overlays = true;               // draws the overlays of the session
-  std::optional<core::Backend> backend;   // nullopt: the program chooses
+  bool has_overlays = true;              // draws the overlays of the session
+  std::optional<core::Backend> backend;  // nullopt: the program chooses
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;  // 0: the program chooses
 };
@@ -29,7 +29,8 @@ std::vector<std::string> image_words(const Session& session, const MakeOptions& 
 
 // Returns the words of `vpe fly` for a flight, with the settings of the session wherever the flight has none. The
 // sizes may be 0: then the flight decides.
-std::vector<std::string> film_words(const Session& session, const std::string& flight, const MakeOptions& options);
+std::vector<std::string> film_words(const Session& session, const std::string& flight,
+                                    const MakeOptions& options);
 
 // Returns the words of `vpe panorama` around the camera. Of overlays it keeps those that panoramas have: names with
 // distances and compass. The width is that of the full circle; 0: the program chooses.

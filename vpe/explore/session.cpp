@@ -38,10 +38,7 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
       shown_settings_(options.settings),
       flights_(surface_->planet_radius_m(), terrain_height_of(surface_)),
       interest_(options.interest),
-      mouse_speed_(options.mouse_speed),
-      invert_wheel_(options.invert_wheel),
-      throws_(options.throws),
-      tilt_on_arrival_(options.tilt_on_arrival),
+      mouse_(options.mouse),
       mover_(options.vehicle) {
   ground_ = ground_of(surface_, settings_.values().exaggeration);
   set_fov(options.fov_deg);

@@ -20,6 +20,7 @@
 #include "vpe/explore/fly_to.h"
 #include "vpe/explore/input/controls.h"
 #include "vpe/explore/mouse.h"
+#include "vpe/explore/mouse_choices.h"
 #include "vpe/explore/mover.h"
 #include "vpe/explore/terrain_query.h"
 #include "vpe/explore/wheel_zoom.h"
@@ -31,11 +32,8 @@ struct SessionOptions {
   std::optional<mars::Pose> start;  // nullopt: the whole planet
   double fov_deg = 50;
   std::vector<core::InterestRegion> interest;
-  double mouse_speed = 1;       // factor on rotation and tilt by a drag
-  bool invert_wheel = false;    // rolling away zooms out
-  bool throws = true;           // a drag that ends in motion goes on and dies off
-  bool tilt_on_arrival = true;  // the wheel tilts a camera that it brings down from straight above
-  VehicleOptions vehicle;       // of the mode drive
+  MouseChoices mouse;
+  VehicleOptions vehicle;  // of the mode drive
 };
 
 // Says what a drag does: nothing, holds the ground under the cursor (over the sky, the sky), tilts and turns about the
@@ -68,6 +66,9 @@ class Session {
   double height_m() const;  // of the camera above the ground
   // Returns the view of the camera: pose, head and screen.
   core::View view() const;
+
+  // Takes effect from the next mouse event on.
+  void set_mouse(const MouseChoices& choices) { mouse_ = choices; }
 
   // Returns the settings in effect. While a flight is followed they include the flight's, and the user's
   // changes since then.
@@ -181,10 +182,7 @@ class Session {
   mars::Pose pose_;
   mars::HeadAngles look_;
   std::vector<core::InterestRegion> interest_;
-  double mouse_speed_ = 1;
-  bool invert_wheel_ = false;
-  bool throws_ = true;
-  bool tilt_on_arrival_ = true;
+  MouseChoices mouse_;
   Mover mover_;
   mars::HeadAngles drive_look_;  // of the driver, relative to the vehicle
   DragSamples samples_;

@@ -21,7 +21,7 @@ constexpr double kStraightDown_deg = -89.5;
 
 double Session::signed_notches(double notches) const {
   if (!std::isfinite(notches)) return 0;
-  return std::clamp(invert_wheel_ ? -notches : notches, -10.0, 10.0);
+  return std::clamp(mouse_.invert_wheel ? -notches : notches, -10.0, 10.0);
 }
 
 void Session::press(MouseUse use, glm::dvec2 xy, std::optional<double> time_s) {
@@ -46,7 +46,7 @@ void Session::drag(glm::dvec2 xy, std::optional<double> time_s) {
       if (time_s) samples_.add(*time_s, xy, pose_);
       return;
     case MouseUse::kTilt: {
-      const glm::dvec2 by = (xy - begun_xy_) * (mouse_speed_ * kTilt_deg_px * 720.0 / screen_.height);
+      const glm::dvec2 by = (xy - begun_xy_) * (mouse_.speed * kTilt_deg_px * 720.0 / screen_.height);
       pose_ = platform_of(tilted(begun_, screen_, by.x, by.y, ground_));
       return;
     }
@@ -55,15 +55,15 @@ void Session::drag(glm::dvec2 xy, std::optional<double> time_s) {
       const mars::Pose from = seen();
       const mars::Pose to = panned(from, screen_, begun_xy_, xy);
       begun_xy_ = xy;
-      look_around(mouse_speed_ * std::remainder(to.yaw_deg - from.yaw_deg, 360.0),
-                  mouse_speed_ * (to.pitch_deg - from.pitch_deg));
+      look_around(mouse_.speed * std::remainder(to.yaw_deg - from.yaw_deg, 360.0),
+                  mouse_.speed * (to.pitch_deg - from.pitch_deg));
       return;
     }
   }
 }
 
 void Session::release(std::optional<double> time_s) {
-  if (use_ == MouseUse::kHold && time_s && throws_ && !follows_) {
+  if (use_ == MouseUse::kHold && time_s && mouse_.throws && !follows_) {
     if (const auto motion = samples_.motion(*time_s, screen_.height)) throw_ = Throw{*motion, 0};
   }
   use_ = MouseUse::kNone;
@@ -71,7 +71,7 @@ void Session::release(std::optional<double> time_s) {
 }
 
 void Session::look_by(double dx_px, double dy_px) {
-  const double deg_px = mouse_speed_ * kLook_deg_px * screen_.fov_deg / 50.0;
+  const double deg_px = mouse_.speed * kLook_deg_px * screen_.fov_deg / 50.0;
   look_around(dx_px * deg_px, -dy_px * deg_px);
 }
 
@@ -124,7 +124,7 @@ mars::Pose Session::wheeled(const mars::Pose& from, glm::dvec2 xy, double factor
   mars::Pose to = zoomed(before, screen_, xy, factor, ground_);
   const bool is_ahead = look_.yaw_deg == 0 && look_.pitch_deg == 0 && look_.roll_deg == 0;
   const bool arrives = from.pitch_deg < kStraightDown_deg || arrival_pitch_deg_ == from.pitch_deg;
-  if (tilt_on_arrival_ && is_ahead && arrives && from.roll_deg == 0) {
+  if (mouse_.tilt_on_arrival && is_ahead && arrives && from.roll_deg == 0) {
     if (const auto held = ground_at(before, screen_, xy, ground_)) {
       const auto distance_m = [&](const mars::Pose& pose) {
         return glm::length(mars::to_camera(pose, ground_.radius_m).position_m - *held);

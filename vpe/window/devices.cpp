@@ -74,6 +74,20 @@ std::optional<explore::PadState> first_pad() {
 Devices::Devices(const explore::Preferences& preferences, DeviceSources sources)
     : preferences_(preferences), sources_(std::move(sources)), tracker_(preferences.head) {
   if (!sources_.pad) sources_.pad = first_pad;
+  open_devices();
+}
+
+std::vector<std::string> Devices::use(const explore::Preferences& preferences, double time_s) {
+  const bool listens_elsewhere = !(preferences.head_from == preferences_.head_from);
+  preferences_ = preferences;
+  tracker_.set_options(preferences.head, time_s);
+  if (!preferences.use_head_tracker || listens_elsewhere) receiver_.reset();
+  errors_.clear();
+  open_devices();
+  return errors_;
+}
+
+void Devices::open_devices() {
   if (preferences_.use_space_mouse && sources_.space_mouse == nullptr) {
     try {
       sources_.space_mouse = explore::open_space_mouse();
@@ -81,7 +95,7 @@ Devices::Devices(const explore::Preferences& preferences, DeviceSources sources)
       // Few users have a space mouse, so its absence is not reported.
     }
   }
-  if (preferences_.use_head_tracker) {
+  if (preferences_.use_head_tracker && receiver_ == nullptr) {
     try {
       receiver_ = std::make_unique<explore::UdpReceiver>(preferences_.head_from);
     } catch (const explore::DeviceError& e) {

@@ -42,6 +42,9 @@ class Devices {
  public:
   Devices(const explore::Preferences& preferences, DeviceSources sources);
 
+  // Uses other preferences from now on; opens and closes devices as they say. Returns why devices could not be opened.
+  std::vector<std::string> use(const explore::Preferences& preferences, double time_s);
+
   // Processes a key event.
   void key(const Event& event);
   void lose_keyboard() { held_.clear(); }
@@ -59,6 +62,8 @@ class Devices {
   std::optional<int> tracker_port() const;
 
  private:
+  void open_devices();
+
   explore::Preferences preferences_;
   DeviceSources sources_;
   explore::KeySet held_;

@@ -68,40 +68,6 @@ Reply set_bookmark(const explore::Session& session, const fs::path& file, int nu
 
 }  // namespace
 
-std::string PlanetOpener::start(const std::string& file) {
-  if (!open_) return "another planet cannot be opened here";
-  if (opening_.valid()) return "wait until " + file_ + " is open";
-  file_ = file;
-  opening_ = std::async(std::launch::async, [open = open_, file] {
-    auto planet = open(file);
-    Display::wake();
-    return planet;
-  });
-  return {};
-}
-
-std::shared_ptr<const paging::PlanetFile> PlanetOpener::take() {
-  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return nullptr;
-  return opening_.get();
-}
-
-void PlanetMaker::begin() {
-  if (!make_) return;
-  making_ = std::async(std::launch::async,
-                       [make = std::exchange(make_, {}), notify = notify_, stop = stop_.get_token()] {
-                         auto planet = make(stop);
-                         notify();
-                         return planet;
-                       });
-}
-
-std::optional<ShownPlanet> PlanetMaker::take() {
-  if (!making_.valid() || making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return std::nullopt;
-  return making_.get();
-}
-
 void ExploreWindow::save_image() {
   saves_image_ = false;
   const fs::path file = new_file(setup_.folder, "", ".png");
@@ -212,7 +178,9 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kPlaceWaypoint:
       return session_.flights().append(session_.pose(), flight_.ground_speed_m_s(session_));
     case Kind::kLeave:
-      if (std::exchange(state_.help, false) || std::exchange(state_.files, false)) return {};
+      if (std::exchange(state_.help, false) || std::exchange(state_.preferences, false) ||
+          std::exchange(state_.files, false))
+        return {};
       if (guide_.inside() != nullptr) {
         leave_overlook();
         return {};

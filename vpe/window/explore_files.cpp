@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
 #include "vpe/explore/command_words.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/panels/file_names.h"
@@ -20,14 +21,47 @@ bool is_image_of_panorama(const fs::path& file) {
   return extension == ".json" || extension == ".jpg" || extension == ".jpeg" || extension == ".png";
 }
 
+JobList::Order shown_panorama(const fs::path& file) {
+  return {JobKind::kShows, "panorama", {"overlook", file.string()}, file, {}};
+}
+
 }  // namespace
 
 void ExploreWindow::draw_files() {
-  const FileActions actions = files_.draw(view_area_, display_.scale(), session_, jobs_, widgets_);
+  const std::optional<double> planet =
+      finer_.is_making() && !finer_.is_stopped() ? std::optional(finer_.fraction()) : std::nullopt;
+  const FileActions actions = files_.draw(view_area_, display_.scale(), session_, {jobs_, planet}, widgets_);
   if (actions.closes) state_.files = false;
+  if (actions.opens_preferences) {
+    state_.preferences = true;
+    state_.files = false;
+  }
   if (actions.open) open_file(*actions.open);
+  if (actions.planet) open_planet(*actions.planet, {});
   if (actions.make) make(*actions.make);
-  if (actions.look_around) start_job("panorama", {"overlook", actions.look_around->string()}, {});
+  if (actions.look_around) start_job(shown_panorama(*actions.look_around));
+  if (actions.stops_planet) finer_.stop();
+}
+
+void ExploreWindow::draw_preferences() {
+  const PreferencesActions actions =
+      window::draw_preferences(view_area_, display_.scale(), setup_.preferences, widgets_);
+  if (actions.closes) state_.preferences = false;
+  if (!actions.error.empty()) show_message(actions.error, true);
+  if (!actions.changed) return;
+  use(*actions.changed);
+  if (setup_.preferences_file.empty()) return;
+  if (const std::string error = explore::save(setup_.preferences, setup_.preferences_file); !error.empty())
+    show_message(error, true);
+}
+
+void ExploreWindow::use(const explore::Preferences& preferences) {
+  // A time of a frame that was set by hand stays.
+  if (session_.settings().values().lod_frame_ms == setup_.preferences.draw_budget_ms)
+    (void)session_.set("lod.frame_ms", base::format_number(preferences.draw_budget_ms));
+  setup_.preferences = preferences;
+  session_.set_mouse(explore::mouse_choices(preferences));
+  for (const std::string& error : devices_.use(preferences, now_s())) show_message(error, true);
 }
 
 void ExploreWindow::open_file(const std::string& name) {
@@ -42,12 +76,26 @@ void ExploreWindow::open_file(const std::string& name) {
   if (explore::is_project_file(whole.string())) return open_project_file(whole);
   if (is_image_of_panorama(whole)) {
     files_.add_recent(whole.string());
-    return start_job("panorama", {"overlook", whole.string()}, {});
+    return start_job(shown_panorama(whole));
   }
-  const std::string error = opener_.start(whole.string());
+  open_planet(whole, {});
+}
+
+void ExploreWindow::open_planet(const fs::path& file, const fs::path& project) {
+  const std::string name = file.empty() ? "the embedded Mars" : file.string();
+  std::string error;
+  if (jobs_.can_start() && setup_.builds_first && setup_.builds_first(file.string())) {
+    std::vector<std::string> words{"info"};
+    if (!file.empty()) words.push_back(file.string());
+    const std::string title = file.empty() ? "planet" : file.filename().string();
+    error = jobs_.start({JobKind::kBuilds, title, std::move(words), file, project});
+  } else {
+    error = opener_.start(file.string());
+    opening_project_ = error.empty() ? project : opening_project_;
+  }
   if (!error.empty()) return show_message(error, true);
-  files_.add_recent(whole.string());
-  show_message("opening " + opener_.file() + "; other files than planet files are converted first");
+  files_.add_recent(project.empty() ? file.string() : project.string());
+  show_message("opening " + (project.empty() ? name : project.string()));
 }
 
 void ExploreWindow::open_flight(const fs::path& file) {
@@ -61,11 +109,7 @@ void ExploreWindow::open_project_file(const fs::path& file) {
   try {
     const explore::ParsedProject parsed = explore::load_project(file.string());
     if (!parsed.errors.empty()) throw std::runtime_error(parsed.errors.front());
-    if (const std::string error = opener_.start(parsed.project->planet.string()); !error.empty())
-      throw std::runtime_error(error);
-    opening_project_ = file;
-    files_.add_recent(file.string());
-    show_message("opening " + file.string());
+    open_planet(parsed.project->planet, file);
   } catch (const std::exception& e) {
     show_message(e.what(), true);
   }
@@ -84,12 +128,12 @@ void ExploreWindow::make(const MakeRequest& request) {
     case MadeKind::kImage: {
       const fs::path file = new_file(setup_.folder, "image-", ".png");
       options.output = file.string();
-      return start_job("image", explore::image_words(session_, options), file);
+      return start_job({JobKind::kMakes, "image", explore::image_words(session_, options), file, {}});
     }
     case MadeKind::kPanorama: {
       const fs::path file = new_file(setup_.folder, "panorama-", ".jpg");
       options.output = file.string();
-      return start_job("panorama", explore::panorama_words(session_, options), file);
+      return start_job({JobKind::kMakes, "panorama", explore::panorama_words(session_, options), file, {}});
     }
     case MadeKind::kFilm: break;
   }
@@ -104,36 +148,40 @@ void ExploreWindow::make(const MakeRequest& request) {
     return show_message(e.what(), true);
   }
   options.output = file.string();
-  start_job("film", explore::film_words(session_, flight.string(), options), file);
+  start_job({JobKind::kMakes, "film", explore::film_words(session_, flight.string(), options), file, {}});
 }
 
-void ExploreWindow::start_job(std::string title, const std::vector<std::string>& words, const fs::path& result) {
-  if (const std::string error = jobs_.start(std::move(title), words, result); !error.empty())
-    return show_message(error, true);
-  if (!result.empty()) show_message("making " + result.string());
+void ExploreWindow::start_job(JobList::Order order) {
+  const std::string made = order.kind == JobKind::kMakes ? order.file.string() : "";
+  if (const std::string error = jobs_.start(std::move(order)); !error.empty()) return show_message(error, true);
+  if (!made.empty()) show_message("making " + made);
 }
 
 void ExploreWindow::update_jobs() {
   jobs_asked_s_ = now_s();
   const std::vector<std::size_t> ended = jobs_.update();
   for (auto n = ended.rbegin(); n != ended.rend(); ++n) {
-    const JobList::Entry& entry = jobs_.entries()[*n];
-    if (entry.is_stopped) {
-      show_message(entry.title + ": stopped");
-    } else if (entry.state.failed) {
-      show_message(entry.state.text, true);
-    } else if (!entry.result.empty()) {
-      show_message(entry.title + ": " + entry.result.string());
-    }
-    if (entry.result.empty()) jobs_.remove(*n);  // a window, which was closed
+    finish_job(jobs_.entries()[*n]);
+    if (jobs_.entries()[*n].order.kind != JobKind::kMakes) jobs_.remove(*n);
   }
   if (state_.files) frames_due_ = std::max(frames_due_, 1);
+}
+
+void ExploreWindow::finish_job(const JobList::Entry& entry) {
+  const JobList::Order& order = entry.order;
+  if (entry.is_stopped) return show_message(order.title + ": stopped");
+  if (entry.state.failed) return show_message(entry.state.text, true);
+  if (order.kind == JobKind::kMakes) return show_message(order.title + ": " + order.file.string());
+  if (order.kind != JobKind::kBuilds) return;
+  if (const std::string error = opener_.start(order.file.string()); !error.empty())
+    return show_message(error, true);
+  opening_project_ = order.project;
 }
 
 std::vector<std::vector<std::string>> ExploreWindow::unfinished() const {
   std::vector<std::vector<std::string>> commands;
   for (const JobList::Entry& entry : jobs_.entries())
-    if (entry.job != nullptr && !entry.result.empty()) commands.push_back(entry.words);
+    if (entry.job != nullptr && entry.order.kind != JobKind::kShows) commands.push_back(entry.order.words);
   return commands;
 }
 

@@ -174,6 +174,7 @@ void ExploreWindow::draw_frame() {
   if (!state_.message.empty()) draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
   if (recorder_.is_recording()) draw_recording_sign(view_area_, display_.scale());
   if (state_.files) draw_files();
+  if (state_.preferences) draw_preferences();
   if (state_.help) draw_explore_help(view_area_, state_.help, widgets_);
   display_.end_frame(std::exchange(capture_, nullptr));
   tip_at_s_ = widgets_.tip_due_s() ? std::optional(now_s() + *widgets_.tip_due_s()) : std::nullopt;
@@ -283,7 +284,8 @@ void ExploreWindow::draw_tabs() {
     ImGui::EndTabItem();
   }
   if (tab("Places")) {
-    const PlacesActions actions = places_.draw(session_, widgets_);
+    const PlacesActions actions =
+        places_.draw(session_, has_project() ? &project_bookmarks_ : nullptr, widgets_);
     if (actions.go_to) {
       session_.set_fov(actions.go_to->fov_deg);
       session_.go(actions.go_to->pose);

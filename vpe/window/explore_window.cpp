@@ -42,7 +42,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       flight_(setup_.flight_file, setup_.folder),
       places_(setup_.bookmarks),
       search_(explore::PlaceSearch(setup_.places)),
-      files_(setup_.recent),
+      files_(setup_.recent, setup_.folder),
       jobs_(setup_.start_job),
       welcome_(search_.places()),
       drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
@@ -53,7 +53,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       live_({setup_.session.settings.values().lod_frame_ms}),
       devices_(setup_.preferences, std::move(setup_.devices)),
       history_(session_.ground().radius_m),
-      opener_(setup_.open_planet),
+      opener_(setup_.open_planet, [] { Display::wake(); }),
       finer_(setup_.make_finer, [] { Display::wake(); }),
       first_fov_deg_(setup_.session.fov_deg),
       begun_(Clock::now()),
@@ -146,7 +146,7 @@ bool ExploreWindow::step(double wait_s) {
                               : moves || !maker_->is_idle() || frames_due_ > 0 ||
                                     live_.state() != lod::RefinementState::kWaiting;
   double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
-  if (jobs_.is_running()) rest_s = std::min(rest_s, kAskJobs_s);
+  if (shows_progress()) rest_s = std::min(rest_s, kAskJobs_s);
   if (tip_at_s_) rest_s = std::min(rest_s, std::max(*tip_at_s_ - now_s(), 0.001));
   const std::vector<Event> events = display_.events(event_wait_s(moves, rest_s));
   if (tip_at_s_ && now_s() >= *tip_at_s_) {
@@ -171,7 +171,7 @@ bool ExploreWindow::step(double wait_s) {
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
   last_step_ = now;
   take_planets();
-  if (jobs_.is_running() && now_s() - jobs_asked_s_ >= kAskJobs_s) update_jobs();
+  if (shows_progress() && now_s() - jobs_asked_s_ >= kAskJobs_s) update_jobs();
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
   keep_work(busy);
@@ -321,8 +321,9 @@ void ExploreWindow::lay_out() {
 
 void ExploreWindow::clear_message() {
   state_.message = opener_.is_opening() ? "opening " + opener_.file() + " ..."
-                   : finer_.is_making() ? "coarse ground, until the planet is built (once, about a minute) ..."
-                                        : "";
+                   : finer_.is_making() && !finer_.is_stopped()
+                       ? "coarse ground, until the planet is built (once, about a minute) ..."
+                       : "";
   state_.message_is_error = false;
   state_.message_since_s = now_s();
   frames_due_ = kFramesAfterChange;

@@ -35,6 +35,7 @@
 #include "vpe/window/panels/map_panel.h"
 #include "vpe/window/panels/measure_panel.h"
 #include "vpe/window/panels/places_panel.h"
+#include "vpe/window/panels/preferences_panel.h"
 #include "vpe/window/panels/search_box.h"
 #include "vpe/window/panels/status_line.h"
 #include "vpe/window/panels/welcome.h"
@@ -45,21 +46,9 @@
 #include "vpe/window/workers/image_maker.h"
 #include "vpe/window/workers/job.h"
 #include "vpe/window/workers/painter.h"
+#include "vpe/window/workers/planet_opener.h"
 
 namespace vpe::window {
-
-// Opens a planet file, or builds one from a raster. Throws if this is not possible.
-using OpenPlanet = std::function<std::shared_ptr<const paging::PlanetFile>(const std::string& file)>;
-
-// Holds a planet as the window uses it.
-struct ShownPlanet {
-  std::shared_ptr<const paging::PlanetFile> planet;
-  std::shared_ptr<const paging::Surface> surface;
-  MakePainter make_painter;
-};
-
-// Makes a planet that takes time. Returns nullopt once it was asked to stop. Throws if it cannot be made.
-using MakePlanet = std::function<std::optional<ShownPlanet>(std::stop_token)>;
 
 class ExploreWindow;
 
@@ -77,7 +66,10 @@ struct ExploreSetup : ShownPlanet {
   std::function<ImageRequest(ImageRequest)> as_drawn;
   // Returns the unit, body-fixed direction of the sun.
   std::function<glm::dvec3(const core::SettingsValues&, const mars::Pose&)> sun;
-  OpenPlanet open_planet;           // for files that are opened or dropped; called on a thread of its own
+  OpenPlanet open_planet;  // for files that are opened or dropped; called on a thread of its own
+  // Returns true for a file of which a planet file is built first, and for "", the embedded Mars; a job does that where
+  // there are jobs.
+  std::function<bool(const std::string& file)> builds_first;
   StartJob start_job;               // for what is made of the session; empty: nothing can be made
   std::vector<std::string> recent;  // files opened last, the newest first
   std::vector<explore::Hotspot> hotspots;
@@ -85,9 +77,10 @@ struct ExploreSetup : ShownPlanet {
   DisplayOptions display;
   explore::Preferences preferences;
   DeviceSources devices;
-  std::filesystem::path bookmarks;  // file; empty: there are no bookmarks
-  std::filesystem::path folder;     // for images, logs and flights; empty: the working directory
-  std::filesystem::path state;      // folder for copies of unsaved flights; empty: there are none
+  std::filesystem::path preferences_file;  // empty: changes last as long as the window
+  std::filesystem::path bookmarks;         // file; empty: there are no bookmarks
+  std::filesystem::path folder;            // for images, logs and flights; empty: the working directory
+  std::filesystem::path state;             // folder for copies of unsaved flights; empty: there are none
   // Called with a window whose view or panels have changed, after a while and at most every few seconds, so that
   // the session can be kept before the program ends. May be empty.
   std::function<void(const ExploreWindow&)> keep_session;
@@ -121,7 +114,8 @@ struct WindowState {
   double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
   bool side_is_open = false;  // in a narrow window
   bool help = false;
-  bool files = false;  // the window "File" is open
+  bool files = false;        // the window "File" is open
+  bool preferences = false;  // and the window "Preferences"
   bool large_map = false;
   explore::MapStyle map_style = explore::MapStyle::kElevation;
   std::string message;  // about the last action or error
@@ -146,47 +140,6 @@ struct ImageLayout {
   glm::dvec2 unwrapped_xy(glm::dvec2 cursor) const;
 };
 
-// Opens a planet on a thread of its own. The destructor waits for it.
-class PlanetOpener {
- public:
-  explicit PlanetOpener(OpenPlanet open) : open_(std::move(open)) {}
-
-  // Starts opening a file. Returns why it cannot, or "".
-  std::string start(const std::string& file);
-  bool is_opening() const { return opening_.valid(); }
-  // Returns the file that was started last.
-  const std::string& file() const { return file_; }
-  // Returns the planet once it is open, else null. Throws if it could not be opened.
-  std::shared_ptr<const paging::PlanetFile> take();
-
- private:
-  OpenPlanet open_;
-  std::string file_;
-  std::future<std::shared_ptr<const paging::PlanetFile>> opening_;
-};
-
-// Makes a planet on a thread of its own. The destructor asks it to stop and waits for it.
-class PlanetMaker {
- public:
-  // `notify` is called on the thread when the planet is made. An empty `make` makes none.
-  PlanetMaker(MakePlanet make, std::function<void()> notify)
-      : make_(std::move(make)), notify_(std::move(notify)) {}
-  ~PlanetMaker() { stop_.request_stop(); }
-
-  // Begins once.
-  void begin();
-  // Returns true until the planet is taken.
-  bool is_making() const { return make_ || making_.valid(); }
-  // Returns the planet once it is made, else nullopt. Throws if it could not be made.
-  std::optional<ShownPlanet> take();
-
- private:
-  MakePlanet make_;  // until it begins
-  std::function<void()> notify_;
-  std::stop_source stop_;
-  std::future<std::optional<ShownPlanet>> making_;
-};
-
 // Runs the window. For the main thread.
 //
 // Typical usage:
@@ -208,7 +161,7 @@ class ExploreWindow {
   const std::filesystem::path& next_project() const { return next_project_; }
   // Returns the files opened last, the newest first.
   const std::vector<std::string>& recent() const { return files_.recent(); }
-  // Returns the commands, as words, of what is still being made and stops with the window.
+  // Returns the commands, as words, of what is still being made or built and stops with the window.
   std::vector<std::vector<std::string>> unfinished() const;
   // Saves a flight with unsaved changes to a new file. Returns a message about it for the time after the window
   // was closed, or "" if there is no such flight.
@@ -302,11 +255,16 @@ class ExploreWindow {
   void set_recording(bool on, const std::filesystem::path& file = {});
   // explore_files.cpp:
   void draw_files();
+  void draw_preferences();
+  void use(const explore::Preferences& preferences);
   void open_file(const std::string& name);
   void open_flight(const std::filesystem::path& file);
   void open_project_file(const std::filesystem::path& file);
   void make(const MakeRequest& request);
-  void start_job(std::string title, const std::vector<std::string>& words, const std::filesystem::path& result);
+  void open_planet(const std::filesystem::path& file, const std::filesystem::path& project);
+  void start_job(JobList::Order order);
+  void finish_job(const JobList::Entry& entry);
+  bool shows_progress() const { return jobs_.is_running() || (state_.files && finer_.is_making()); }
   void update_jobs();
   // explore_project.cpp:
   std::string open_project();

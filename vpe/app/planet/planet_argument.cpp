@@ -202,7 +202,8 @@ std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& c
                 });
 }
 
-std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop) {
+std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop,
+                                                                const std::function<void(double)>& tell) {
   try {
     return cached(
         embedded_planet_path().stem().string(), "the embedded Mars", true, common.quiet,
@@ -210,8 +211,9 @@ std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& co
           paging::BuildOptions options;
           options.threads = common.threads > 0 ? common.threads : std::max(1, base::default_threads() - 1);
           options.resampling_posts = kSyntheticResamplingPosts;
-          build_embedded(target, options, [&stop](const paging::BuildProgress&) {
+          build_embedded(target, options, [&](const paging::BuildProgress& progress) {
             if (stop.stop_requested()) throw Stopped();
+            if (tell) tell(progress.fraction);
           });
         },
         stop);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -36,8 +37,9 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
 std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& common);
 
 // Opens the embedded Mars as open_planet("") does, without messages and for any thread; it leaves one core to others.
-// Returns null once a stop was requested; the next call continues.
-std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop);
+// Tells the share of the building that is done. Returns null once a stop was requested; the next call continues.
+std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop,
+                                                                const std::function<void(double)>& tell);
 
 // Prints a note on stderr, unless quiet, when some of the planet is made up: which of its numbers are data.
 void note_illustration(const paging::PlanetMeta& meta, bool quiet);

@@ -42,6 +42,10 @@ std::string write_file(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
+MouseChoices mouse_choices(const Preferences& preferences) {
+  return {preferences.mouse_speed, preferences.invert_wheel, preferences.throws, preferences.tilt_on_arrival};
+}
+
 const core::KeyRegistry<Preferences>& preference_keys() {
   using P = Preferences;
   using Pad = PadOptions;

@@ -21,6 +21,7 @@
 #include "vpe/explore/input/head_tracker.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
+#include "vpe/explore/mouse_choices.h"
 
 namespace vpe::explore {
 
@@ -61,6 +62,8 @@ struct LastSession {
   std::string overlays;  // settings of overlays that are on, one a line, as "overlay.scale=on"
   std::string recent;    // paths of the files opened last, one a line, the newest first
 };
+
+MouseChoices mouse_choices(const Preferences& preferences);
 
 // Return the keys of the two files.
 const core::KeyRegistry<Preferences>& preference_keys();

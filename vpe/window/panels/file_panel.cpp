@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vpe/explore/files/planet_files.h"
+
 namespace vpe::window {
 
 namespace {
@@ -12,6 +14,21 @@ std::vector<std::string> names_of(const std::array<MadeSize, N>& sizes) {
   std::vector<std::string> names;
   for (const MadeSize& size : sizes) names.emplace_back(size.name);
   return names;
+}
+
+void begin_row(const std::string& title) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(title.c_str());
+  ImGui::SameLine(ImGui::GetFontSize() * 7);
+}
+
+// Draws how far work is, and a button; a negative share is not known. Returns true if the button was pressed.
+bool draw_progress(double fraction, const std::string& text, const std::string& id, Widgets& widgets) {
+  ImGui::ProgressBar(static_cast<float>(std::max(fraction, 0.0)), {-ImGui::GetFontSize() * 4, 0},
+                     fraction < 0 ? "..." : nullptr);
+  widgets.tip(text.c_str());
+  ImGui::SameLine();
+  return widgets.button(("Stop" + id).c_str(), "finished frames and parts are kept");
 }
 
 bool is_panorama(const std::filesystem::path& file) {
@@ -27,23 +44,37 @@ void FilePanel::add_recent(const std::string& file) {
   if (recent_.size() > kMostRecent) recent_.resize(kMostRecent);
 }
 
-FileActions FilePanel::draw(const ViewArea& area, double scale, const explore::Session& session, JobList& jobs,
+void FilePanel::focus() {
+  takes_focus_ = true;
+  std::vector<std::filesystem::path> folders{folder_.empty() ? "." : folder_};
+  for (const std::string& file : recent_) {
+    const std::filesystem::path path(file);
+    if (path.extension() == ".vpe") folders.push_back(path.parent_path());
+  }
+  planets_ = explore::planet_files(folders);
+}
+
+FileActions FilePanel::draw(const ViewArea& area, double scale, const explore::Session& session, FileWork work,
                             Widgets& widgets) {
   FileActions actions;
   const double width = std::min(area.width, 460 * scale);
-  ImGui::SetNextWindowPos(at(area.x + (area.width - width) / 2, area.y + std::min(40 * scale, area.height / 8)));
+  ImGui::SetNextWindowPos(
+      at(area.x + (area.width - width) / 2, area.y + std::min(40 * scale, area.height / 8)));
   ImGui::SetNextWindowSizeConstraints(at(width, 0), at(width, area.height * 0.8));
   ImGui::Begin("files", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   widgets.group("file");
   if (widgets.button("Close", "Esc or Ctrl+O")) actions.closes = true;
+  ImGui::SameLine();
+  if (widgets.button("Preferences", "mouse, speeds, devices")) actions.opens_preferences = true;
   draw_open(actions, widgets);
+  draw_planets(actions, widgets);
   ImGui::Separator();
-  draw_make(session, jobs.can_start(), actions, widgets);
-  if (!jobs.entries().empty()) {
+  draw_make(session, work.jobs.can_start(), actions, widgets);
+  if (work.planet || !work.jobs.entries().empty()) {
     ImGui::Separator();
-    draw_jobs(jobs, actions, widgets);
+    draw_work(work, actions, widgets);
   }
   widgets.group("");
   ImGui::End();
@@ -55,14 +86,30 @@ void FilePanel::draw_open(FileActions& actions, Widgets& widgets) {
   if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 4);
   const bool is_entered = widgets.text(
-      "##open", name_, "a planet file, DEM, flight, project or panorama; ~/ is your folder. Or drop it here.");
+      "##open", name_, "a planet file, DEM, flight, project or panorama; ~/ is your folder. Or drop it here.", "file to open");
   ImGui::SameLine();
-  if ((widgets.button("Open") || is_entered) && !name_.empty()) actions.open = name_;
+  if ((widgets.button("Open") || is_entered) && !name_.empty()) actions.open = std::exchange(name_, {});
   for (std::size_t n = 0; n < recent_.size(); ++n) {
     const std::string label =
         std::filesystem::path(recent_[n]).filename().string() + "##recent " + std::to_string(n);
     if (widgets.button(label.c_str(), recent_[n].c_str())) actions.open = recent_[n];
   }
+}
+
+void FilePanel::draw_planets(FileActions& actions, Widgets& widgets) {
+  ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 4);
+  std::vector<std::string> names{"the embedded Mars"};
+  // Folders may have files of one name.
+  for (std::size_t n = 0; n < planets_.size(); ++n)
+    names.push_back(planets_[n].filename().string() + "##" + std::to_string(n));
+  int chosen = -1;
+  if (!widgets.choose("##Planets", chosen, names,
+                      "those beside the files opened last, and in the present folder", "choose a planet"))
+    return;
+  if (chosen == 0)
+    actions.planet = std::filesystem::path();
+  else if (chosen > 0)
+    actions.planet = planets_[static_cast<std::size_t>(chosen) - 1];
 }
 
 void FilePanel::draw_make(const explore::Session& session, bool can_make, FileActions& actions,
@@ -96,20 +143,20 @@ void FilePanel::draw_make(const explore::Session& session, bool can_make, FileAc
   if (!has_flight) ImGui::TextDisabled("A film needs a flight: add waypoints in Flight, or record one.");
 }
 
-void FilePanel::draw_jobs(JobList& jobs, FileActions& actions, Widgets& widgets) {
+void FilePanel::draw_work(FileWork work, FileActions& actions, Widgets& widgets) {
+  JobList& jobs = work.jobs;
   std::optional<std::size_t> removed;
+  if (work.planet) {
+    begin_row("planet");
+    if (draw_progress(*work.planet, "the complete planet replaces this one", "##planet", widgets))
+      actions.stops_planet = true;
+  }
   for (std::size_t n = 0; n < jobs.entries().size(); ++n) {
     const JobList::Entry& entry = jobs.entries()[n];
     const std::string id = "##job " + std::to_string(n);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(entry.title.c_str());
-    ImGui::SameLine(ImGui::GetFontSize() * 7);
+    begin_row(entry.order.title);
     if (entry.job != nullptr) {
-      ImGui::ProgressBar(static_cast<float>(std::max(entry.state.fraction, 0.0)), {-ImGui::GetFontSize() * 4, 0},
-                         entry.state.fraction < 0 ? "..." : nullptr);
-      widgets.tip(entry.state.text.c_str());
-      ImGui::SameLine();
-      if (widgets.button(("Stop" + id).c_str(), "finished frames and parts are kept")) jobs.stop(n);
+      if (draw_progress(entry.state.fraction, entry.state.text, id, widgets)) jobs.stop(n);
       continue;
     }
     if (entry.is_stopped) {
@@ -117,12 +164,12 @@ void FilePanel::draw_jobs(JobList& jobs, FileActions& actions, Widgets& widgets)
     } else if (entry.state.failed) {
       coloured(kErrorColour, entry.state.text);
     } else {
-      ImGui::TextUnformatted(entry.result.filename().c_str());
-      widgets.tip(entry.result.c_str());
-      if (is_panorama(entry.result)) {
+      ImGui::TextUnformatted(entry.order.file.filename().c_str());
+      widgets.tip(entry.order.file.c_str());
+      if (is_panorama(entry.order.file)) {
         ImGui::SameLine();
         if (widgets.button(("Look around" + id).c_str(), "in a window of its own"))
-          actions.look_around = entry.result;
+          actions.look_around = entry.order.file;
       }
     }
     ImGui::SameLine();

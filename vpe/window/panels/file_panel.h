@@ -38,37 +38,51 @@ struct MakeRequest {
 };
 
 struct FileActions {
-  std::optional<std::string> open;  // file of any kind
+  std::optional<std::string> open;              // file of any kind
+  std::optional<std::filesystem::path> planet;  // of the list; an empty path is the embedded Mars
   std::optional<MakeRequest> make;
   std::optional<std::filesystem::path> look_around;  // panorama to open in a window of its own
+  bool stops_planet = false;                         // the planet that is being built
+  bool opens_preferences = false;
   bool closes = false;
+};
+
+// What is being made.
+struct FileWork {
+  JobList& jobs;
+  std::optional<double> planet;  // share that is done of the planet that replaces the one shown
 };
 
 // Draws the window over the view. For the window's thread.
 class FilePanel {
  public:
-  // `recent`: the files opened last, the newest first.
-  explicit FilePanel(std::vector<std::string> recent) : recent_(std::move(recent)) {}
+  // `recent`: the files opened last, the newest first. `folder`: where planet files are looked for, beside the folders of
+  // those in `recent`; may be empty.
+  FilePanel(std::vector<std::string> recent, std::filesystem::path folder)
+      : recent_(std::move(recent)), folder_(std::move(folder)) {}
 
   static constexpr std::size_t kMostRecent = 8;
 
   // Puts a file at the head of the list.
   void add_recent(const std::string& file);
   const std::vector<std::string>& recent() const { return recent_; }
-  // Gives the field of names the keyboard in the next frame.
-  void focus() { takes_focus_ = true; }
+  // Gives the field of names the keyboard in the next frame, and looks for planet files.
+  void focus();
   // Keeps a name that could not be opened in its field.
   void refuse(const std::string& name) { refused_ = name; }
 
-  FileActions draw(const ViewArea& area, double scale, const explore::Session& session, JobList& jobs,
+  FileActions draw(const ViewArea& area, double scale, const explore::Session& session, FileWork work,
                    Widgets& widgets);
 
  private:
   void draw_open(FileActions& actions, Widgets& widgets);
+  void draw_planets(FileActions& actions, Widgets& widgets);
   void draw_make(const explore::Session& session, bool can_make, FileActions& actions, Widgets& widgets);
-  static void draw_jobs(JobList& jobs, FileActions& actions, Widgets& widgets);
+  static void draw_work(FileWork work, FileActions& actions, Widgets& widgets);
 
   std::vector<std::string> recent_;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> planets_;  // found by focus()
   std::string name_;
   std::optional<std::string> refused_;
   bool takes_focus_ = false;

@@ -97,9 +97,10 @@ bool Widgets::tab(const char* label) {
   return open;
 }
 
-bool Widgets::choose(const char* label, int& index, std::span<const std::string> names, const char* tip) {
+bool Widgets::choose(const char* label, int& index, std::span<const std::string> names, const char* tip,
+                     const char* hint) {
   const auto count = static_cast<int>(names.size());
-  const char* shown = index >= 0 && index < count ? names[static_cast<std::size_t>(index)].c_str() : "";
+  const char* shown = index >= 0 && index < count ? names[static_cast<std::size_t>(index)].c_str() : hint;
   bool changed = false;
   const bool open = ImGui::BeginCombo(label, shown);
   record(label);
@@ -153,7 +154,7 @@ bool Widgets::slide(const char* label, double& value, double low, double high, c
   return changed;
 }
 
-bool Widgets::text(const char* label, std::string& value, const char* tip) {
+bool Widgets::text(const char* label, std::string& value, const char* tip, const char* hint) {
   std::string& draft = drafts_[ImGui::GetID(label)];
   auto refused = refused_.find(name_of(label));
   if (refused != refused_.end() && refused->second.instead.value_or(value) != value) {
@@ -165,7 +166,8 @@ bool Widgets::text(const char* label, std::string& value, const char* tip) {
   if (editing_ != ImGui::GetID(label)) draft = is_refused ? refused->second.text : value;
   if (is_refused) ImGui::PushStyleColor(ImGuiCol_Text, {1, 0.5F, 0.4F, 1});
   const bool entered =
-      ImGui::InputText(label, &draft, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+      ImGui::InputTextWithHint(label, hint, &draft,
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (is_refused) ImGui::PopStyleColor();
   record(label);
   show_tip(tip);

@@ -43,15 +43,18 @@ class Widgets {
   bool check(const char* label, bool& on, const char* tip = nullptr);
   bool tab(const char* label);                   // if true, call ImGui::EndTabItem() after it
   bool header(const char* label, bool is_open);  // true while it is open; `is_open` at first
-  bool choose(const char* label, int& index, std::span<const std::string> names, const char* tip = nullptr);
+  // `hint` stands in the field while nothing is chosen.
+  bool choose(const char* label, int& index, std::span<const std::string> names, const char* tip = nullptr,
+              const char* hint = "");
   // A number that is typed or stepped. Typed text takes effect with Enter, or when the field is left; Esc drops
   // it.
   bool number(const char* label, double& value, double low, double high, double step, const char* format,
               const char* tip = nullptr);
   bool slide(const char* label, double& value, double low, double high, const char* format, bool logarithmic,
              const char* tip = nullptr);
-  // A text field. Returns true if Enter is pressed or the field is left with another text.
-  bool text(const char* label, std::string& value, const char* tip = nullptr);
+  // A text field. Returns true if Enter is pressed or the field is left with another text. `hint` stands in the field
+  // while it is empty.
+  bool text(const char* label, std::string& value, const char* tip = nullptr, const char* hint = "");
   // Keeps a text that was refused in its field, to be corrected.
   void refuse(const char* label, const std::string& text) { refused_[name_of(label)] = {text, {}}; }
   // Shows a tooltip of the item drawn last once the cursor has rested on it.

@@ -6,11 +6,11 @@
 
 namespace vpe::window {
 
-std::string JobList::start(std::string title, const std::vector<std::string>& words,
-                           std::filesystem::path result) {
+std::string JobList::start(Order order) {
   if (!start_) return "nothing can be made here";
   try {
-    Entry entry{std::move(title), words, std::move(result), start_(words), {}};
+    Entry entry{std::move(order), nullptr, {}};
+    entry.job = start_(entry.order.words);
     entry.state = entry.job->state();
     entries_.push_back(std::move(entry));
     return {};

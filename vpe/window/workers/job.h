@@ -29,22 +29,31 @@ class Job {
 // Starts a command of the program, given by its words without the program's name. Throws if it cannot be started.
 using StartJob = std::function<std::unique_ptr<Job>(const std::vector<std::string>& words)>;
 
+// What a job is for: a file that it makes; a file that is shown in a window of its own until that is closed; a planet
+// file that is built of a raster, and opened then.
+enum class JobKind { kMakes, kShows, kBuilds };
+
 // Holds the jobs that run or have ended, oldest first. For the window's thread.
 class JobList {
  public:
-  struct Entry {
+  struct Order {
+    JobKind kind = JobKind::kMakes;
     std::string title;
     std::vector<std::string> words;  // of its command
-    std::filesystem::path result;    // the file that it makes; empty: none
-    std::unique_ptr<Job> job;      // null once it has ended
+    std::filesystem::path file;      // that is made, shown or built from
+    std::filesystem::path project;   // that is opened with the planet; empty: none
+  };
+  struct Entry {
+    Order order;
+    std::unique_ptr<Job> job;  // null once it has ended
     JobState state;
     bool is_stopped = false;  // by the user
   };
 
   explicit JobList(StartJob start) : start_(std::move(start)) {}
 
-  // Starts a command that writes a file. Returns what is wrong, or "".
-  std::string start(std::string title, const std::vector<std::string>& words, std::filesystem::path result);
+  // Starts a command. Returns what is wrong, or "".
+  std::string start(Order order);
   // Asks the jobs how far they are. Returns the entries that have ended since the last call.
   std::vector<std::size_t> update();
   const std::vector<Entry>& entries() const { return entries_; }
