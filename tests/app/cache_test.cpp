@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include "tests/app/support/app_fixture.h"
 #include "tests/support/http_server.h"
@@ -151,14 +152,15 @@ TEST_F(Cache, AWaitForAnotherBuildIsTold) {
   ASSERT_FALSE(lock.empty());
   for (const auto& entry : fs::directory_iterator(lock.parent_path()))
     if (entry.path().extension() == ".vpe") fs::remove(entry.path());
-  const int file = ::open(lock.c_str(), O_RDWR | O_CLOEXEC);
+  int file = ::open(lock.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_GE(file, 0);
   ASSERT_EQ(::flock(file, LOCK_EX), 0);
-  std::jthread other([file] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    ::close(file);
-  });
-  const Result result = run(command_for({"query", "flat.tif", "30,10", "--json"}));
+  Command query = command_for({"query", "flat.tif", "30,10", "--json"});
+  query.watch = [&file](const std::string& err) {
+    if (file >= 0 && err.find("another vpe is building") != std::string::npos) ::close(std::exchange(file, -1));
+  };
+  const Result result = run(query);
+  if (file >= 0) ::close(file);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("another vpe is building"), std::string::npos) << result.err;
 }

@@ -90,6 +90,7 @@ Result run(const Command& command) {
       ::kill(pid, command.signal);
       result.signalled = true;
     }
+    if (command.watch) command.watch(text_of(caught / "err"));
     if (Clock::now() > end) ::kill(pid, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

@@ -20,6 +20,7 @@ struct Command {
   std::string output_to;                           // file for stdout; then Result::out stays empty
   int signal = 0;                                  // sent once when() is true
   std::function<bool()> when;
+  std::function<void(const std::string& err)> watch;  // called again and again with what is on stderr so far
   double limit_s = test_support::kIsSanitized ? 1200 : 120;  // time after which it is killed
 };
 
