@@ -45,7 +45,8 @@ double resident_mb() {
 double part(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::ranges::sort(values);
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
 // Moves the mouse, from construction to destruction, and tells when.
@@ -138,7 +139,8 @@ void print(const char* view, const char* what, const Feel& f, double settled_s) 
 int main(int argc, char** argv) {
   using namespace vpe;
   if (argc < 2) {
-    std::fprintf(stderr, "usage: window_bench PLANET [--size WxH] [--backend NAME] [--seconds S] [--memory MB]\n");
+    std::fprintf(stderr,
+                 "usage: window_bench PLANET [--size WxH] [--backend NAME] [--seconds S] [--memory MB]\n");
     return 2;
   }
   int width = 1280;
@@ -153,7 +155,9 @@ int main(int argc, char** argv) {
     if (key == "--seconds") seconds = std::stod(value);
     if (key == "--memory") common.memory_mb = std::stoi(value);
     if (key == "--backend")
-      drawn_by = value == "ray" ? core::DrawnBy::kRay : value == "polygon" ? core::DrawnBy::kPolygon : core::DrawnBy::kAuto;
+      drawn_by = value == "ray"       ? core::DrawnBy::kRay
+                 : value == "polygon" ? core::DrawnBy::kPolygon
+                                      : core::DrawnBy::kAuto;
   }
   const window::Screen screen(width, height);
   if (!screen.why_not().empty()) {
@@ -163,7 +167,9 @@ int main(int argc, char** argv) {
   window::ExploreSetup setup;
   setup.planet = paging::PlanetFile::open(argv[1]);
   setup.surface = std::make_shared<const paging::Surface>(setup.planet, std::size_t{128} << 20);
-  setup.make_painter = [planet = setup.planet, common] { return std::make_unique<app::WindowPainter>(planet, common); };
+  setup.make_painter = [planet = setup.planet, common] {
+    return std::make_unique<app::WindowPainter>(planet, common);
+  };
   setup.display.width = width;
   setup.display.height = height;
   setup.display.scale = width > 2000 ? 2 : 1;
@@ -183,8 +189,9 @@ int main(int argc, char** argv) {
                           {"valles 8 km", {-59.2, -13.7, 4000, 60, -20, 0}},
                           {"gale 12 km", {137.4, -5.6, 12'000, 0, -25, 0}},
                           {"gale 30 m", {137.4, -4.6, -4470, 0, -5, 0}}};
-  std::printf("%dx%d, %s, %d MB\n| view | motion | images/s | input to image: median | 95 %% (ms) | cores | settled (s) |\n",
-              width, height, std::string(core::to_string(drawn_by)).c_str(), common.memory_mb);
+  std::printf(
+      "%dx%d, %s, %d MB\n| view | motion | images/s | input to image: median | 95 %% (ms) | cores | settled (s) |\n",
+      width, height, std::string(core::to_string(drawn_by)).c_str(), common.memory_mb);
   const double x = width * 0.62;
   const double y = height * 0.55;
   const double radius = height * 0.15;

@@ -127,6 +127,7 @@ TEST(Keyboard, CommonKeysHaveTheirUsualActions) {
       {"R", {ActionKind::kReset}},
       {"H", {ActionKind::kHidePanels}},
       {"F1", {ActionKind::kHelp}},
+      {"F6", {ActionKind::kPanelKeys}},
       {"F11", {ActionKind::kFullScreen}},
       {"F12", {ActionKind::kScreenshot}},
       {"Backspace", {ActionKind::kViewBack}},

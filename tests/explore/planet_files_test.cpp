@@ -18,7 +18,8 @@ TEST(PlanetFiles, AreThoseOfAllFoldersByNameEachOnce) {
   const fs::path b = folder / "b";
   fs::create_directories(a / "folder.vpe");
   fs::create_directories(b);
-  for (const fs::path& file : {a / "moon.vpe", a / "dem.tif", b / "mars.vpe", b / "moon.vpe", b / "mars.vpe.part"})
+  for (const fs::path& file :
+       {a / "moon.vpe", a / "dem.tif", b / "mars.vpe", b / "moon.vpe", b / "mars.vpe.part"})
     std::ofstream(file) << "-";
   const std::vector<fs::path> folders{a, b, a / "../b", {}, folder / "none"};
   EXPECT_EQ(planet_files(folders), (std::vector<fs::path>{b / "mars.vpe", a / "moon.vpe", b / "moon.vpe"}));
@@ -27,7 +28,8 @@ TEST(PlanetFiles, AreThoseOfAllFoldersByNameEachOnce) {
 
 TEST(PlanetFiles, AreNotTooMany) {
   const test_support::TempDir folder;
-  for (std::size_t n = 0; n < kMostPlanets + 20; ++n) std::ofstream(folder / (std::to_string(1000 + n) + ".vpe")) << "-";
+  for (std::size_t n = 0; n < kMostPlanets + 20; ++n)
+    std::ofstream(folder / (std::to_string(1000 + n) + ".vpe")) << "-";
   const std::vector<fs::path> folders{folder.path()};
   const std::vector<fs::path> found = planet_files(folders);
   ASSERT_EQ(found.size(), kMostPlanets);

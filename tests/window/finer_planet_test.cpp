@@ -75,15 +75,11 @@ TEST_F(FinerPlanet, TheCameraStaysAboveItsGround) {
 
 TEST_F(FinerPlanet, TheWindowFileTellsProgressAndStopsIt) {
   open_coarse();
-  const auto is_shown = [this] { return window_->widgets().places().count("file/Stop##planet") > 0; };
   ASSERT_EQ(window_->act({explore::ActionKind::kFiles}), "");
-  for (int n = 0; n < 1000 && !is_shown(); ++n) iterate(1);
-  iterate(5);
   click("file/Stop##planet");
   for (int n = 0; n < 1000 && !stopped_; ++n) iterate(1);
   EXPECT_TRUE(stopped_);
-  for (int n = 0; n < 1000 && is_shown(); ++n) iterate(1);
-  EXPECT_FALSE(is_shown());
+  EXPECT_TRUE(waits_for("file/Stop##planet", false));
   EXPECT_FALSE(window_->state().message_is_error);
   EXPECT_NE(&window_->session().surface().planet(), finer_.get());
 }

@@ -305,6 +305,16 @@ TEST_F(InterfaceTest, CopyPutsPlaceAndCommandOnTheClipboard) {
       << text;
 }
 
+TEST_F(InterfaceTest, EnterWithoutHotspotsIsNoError) {
+  open();
+  settle();
+  key("Return");
+  iterate(3);
+  EXPECT_FALSE(window_->state().message_is_error);
+  EXPECT_NE(window_->state().message.find("no panorama to enter"), std::string::npos);
+  EXPECT_EQ(window_->state().message.find("--"), std::string::npos);
+}
+
 TEST_F(InterfaceTest, TheModeOfMotionIsChosenOverTheView) {
   open();
   window_->session().put({20, 10, 3000, 0, -20, 0});

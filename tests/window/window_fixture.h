@@ -56,7 +56,14 @@ class WindowTest : public testing::Test {
     robot_->release();
     iterate(2);
   }
+  // Waits for a frame that shows the widget.
+  bool waits_for(const std::string& label, bool is_there = true) {
+    for (int n = 0; n < 500 && window_->widgets().places().contains(label) != is_there; ++n)
+      if (!window_->step(0.01)) return false;
+    return window_->widgets().places().contains(label) == is_there;
+  }
   void click(const std::string& label) {
+    waits_for(label);
     const auto found = window_->widgets().places().find(label);
     ASSERT_NE(found, window_->widgets().places().end()) << "no widget is called " << label;
     const WidgetPlace& p = found->second;

@@ -53,6 +53,14 @@ void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
   ++changes_;
 }
 
+std::optional<mars::LonLat> Session::place_at(glm::dvec2 xy) const {
+  const core::View shown = view();
+  const glm::dvec3 ray = core::pixel_ray(shown, xy.x, xy.y);
+  const double range_m = ground_.cast_m(shown.camera.position_m, ray);
+  if (!std::isfinite(range_m)) return std::nullopt;
+  return mars::lon_lat(shown.camera.position_m + ray * range_m);
+}
+
 double Session::height_m() const { return height_above_ground_m(pose_, ground_); }
 
 core::View Session::view() const {

@@ -70,6 +70,9 @@ class Session {
   // Takes effect from the next mouse event on.
   void set_mouse(const MouseChoices& choices) { mouse_ = choices; }
 
+  // Returns the ground that the view shows at a position of its image, or nullopt for the sky.
+  std::optional<mars::LonLat> place_at(glm::dvec2 xy) const;
+
   // Returns the settings in effect. While a flight is followed they include the flight's, and the user's
   // changes since then.
   const core::Settings& settings() const { return shown_settings_; }

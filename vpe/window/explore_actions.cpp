@@ -22,9 +22,9 @@ constexpr double kZoomStep = 1.15;  // of the field of view
 
 // Actions of the window while a panorama is entered. Others would move the camera, which is not shown then.
 using Kind = explore::ActionKind;
-constexpr std::array kInside{Kind::kRecord, Kind::kLeave,         Kind::kRecentreHead,
-                             Kind::kMap,    Kind::kHidePanels,    Kind::kFullScreen,
-                             Kind::kHelp,   Kind::kEnterOverlook, Kind::kFiles};
+constexpr std::array kInside{Kind::kRecord,     Kind::kLeave,      Kind::kRecentreHead, Kind::kMap,
+                             Kind::kHidePanels, Kind::kFullScreen, Kind::kHelp,         Kind::kEnterOverlook,
+                             Kind::kFiles,      Kind::kPanelKeys};
 
 constexpr const char* kNoBookmarks = "there is no folder for bookmarks: HOME is not set";
 
@@ -79,9 +79,17 @@ void ExploreWindow::save_image() {
   }
 }
 
+// Returns the place under the cursor; with the cursor beside the view, as where only the keyboard is used, the one in
+// the middle.
+std::optional<mars::LonLat> ExploreWindow::pointed_place() const {
+  const bool is_over = view_area_.holds(cursor_.x, cursor_.y) && !ImGui::GetIO().WantCaptureMouse;
+  if (under_cursor_ || is_over) return under_cursor_;
+  return session_.place_at({session_.screen().width / 2.0, session_.screen().height / 2.0});
+}
+
 std::string ExploreWindow::copy_view() {
   const mars::LonLat place =
-      under_cursor_.value_or(mars::LonLat{session_.pose().lon_deg, session_.pose().lat_deg});
+      pointed_place().value_or(mars::LonLat{session_.pose().lon_deg, session_.pose().lat_deg});
   std::string text = mars::place_text(place);
   if (setup_.command_line) text += "\n" + setup_.command_line(session_);
   glfwSetClipboardString(display_.handle(), text.c_str());
@@ -208,11 +216,21 @@ std::string ExploreWindow::act(const explore::Action& action) {
       return {};
     case Kind::kCopy: return copy_view();
     case Kind::kHelp: state_.help = !state_.help; return {};
-    case Kind::kMeasure:
-      if (!under_cursor_) return "there is no ground under the cursor";
-      measure_.add(*under_cursor_);
+    case Kind::kPanelKeys:
+      devices_.lose_keyboard();
+      panel_focus_.next();
       return {};
+    case Kind::kMeasure:
+      if (const auto place = pointed_place()) {
+        measure_.add(*place);
+        return {};
+      }
+      return "there is no ground under the cursor";
     case Kind::kEnterOverlook: {
+      if (guide_.hotspots().empty()) {
+        show_message("there is no panorama to enter: no file of hotspots is open");
+        return {};
+      }
       if (std::string error = guide_.enter(session_); !error.empty()) return error;
       const explore::Hotspot& hotspot = *guide_.inside_hotspot();
       show_message(hotspot.name + ": press Esc to leave");

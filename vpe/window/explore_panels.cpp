@@ -82,7 +82,8 @@ void draw_explore_help(const ViewArea& area, bool& is_open, Widgets& widgets) {
       {"Ctrl + left drag", "look around in place; in fly and walk any left drag does"},
       {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
       {"double click", "fly there"},
-      {"with a tool of Draw", "click: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
+      {"with a tool of Draw",
+       "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
       {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project"},
       {"on the map",
        "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "

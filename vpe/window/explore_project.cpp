@@ -59,7 +59,7 @@ bool ExploreWindow::handle_drawing(const Event& event) {
   const bool is_over_view =
       !state_.large_map && !io.WantCaptureMouse && !state_.stereo && state_.image_error.empty();
   const std::optional<glm::dvec2> xy = is_over_view ? image_layout().camera_xy(cursor_) : std::nullopt;
-  const bool is_mine = drawing_.handle(event, xy, io.WantTextInput, session_);
+  const bool is_mine = drawing_.handle(event, xy, io.WantTextInput || panel_focus_.is_on(), session_);
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
   return is_mine;
 }

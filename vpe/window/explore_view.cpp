@@ -172,12 +172,7 @@ void ExploreWindow::find_cursor() {
   measure_.update();
   under_cursor_.reset();
   if (state_.large_map || guide_.inside() != nullptr || ImGui::GetIO().WantCaptureMouse) return;
-  const std::optional<glm::dvec2> xy = image_layout().camera_xy(cursor_);
-  if (!xy) return;
-  const core::View view = session_.view();
-  const glm::dvec3 ray = core::pixel_ray(view, xy->x, xy->y);
-  const double range_m = session_.ground().cast_m(view.camera.position_m, ray);
-  if (std::isfinite(range_m)) under_cursor_ = mars::lon_lat(view.camera.position_m + ray * range_m);
+  if (const auto xy = image_layout().camera_xy(cursor_)) under_cursor_ = session_.place_at(*xy);
 }
 
 void ExploreWindow::draw_view() {

@@ -161,7 +161,8 @@ bool ExploreWindow::step(double wait_s) {
     frames_due_ = std::max(frames_due_, hovers ? 1 : kFramesAfterChange);
   }
   lay_out();
-  const DeviceReading input = devices_.read(now_s(), ImGui::GetIO().WantTextInput, key_mode());
+  const DeviceReading input =
+      devices_.read(now_s(), ImGui::GetIO().WantTextInput || panel_focus_.is_on(), key_mode());
   for (const explore::Action& action : input.actions) {
     if (const std::string error = act(action); !error.empty()) show_message(error, true);
     frames_due_ = kFramesAfterChange;
@@ -256,7 +257,7 @@ void ExploreWindow::handle(const Event& event) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
-  if (handle_drawing(event)) return;
+  if (handle_panel_keys(event) || handle_drawing(event)) return;
   switch (event.kind) {
     case Event::Kind::kKeyPress:
     case Event::Kind::kKeyRepeat:
@@ -275,6 +276,19 @@ void ExploreWindow::handle(const Event& event) {
   }
 }
 
+// Returns true if the event was a key that leads from panel to panel.
+bool ExploreWindow::handle_panel_keys(const Event& event) {
+  if (!panel_focus_.is_on() || event.kind != Event::Kind::kKeyPress) return false;
+  if (event.code == GLFW_KEY_F6) {
+    panel_focus_.next();
+    return true;
+  }
+  const bool is_used = ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+  if (event.code != GLFW_KEY_ESCAPE || is_used) return false;
+  panel_focus_.leave();
+  return true;
+}
+
 void ExploreWindow::scroll(glm::dvec2 xy, double notches) {
   welcome_.dismiss();
   session_.wheel(xy, notches);
@@ -287,6 +301,7 @@ void ExploreWindow::handle_button(const Event& event) {
   }
   const std::optional<glm::dvec2> over = image_layout().camera_xy(cursor_);
   if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
+  panel_focus_.leave();
   welcome_.dismiss();
   const glm::dvec2 xy = *over;
   held_half_ = image_layout().unwrapped_xy(cursor_) - xy;

@@ -42,6 +42,7 @@
 #include "vpe/window/session_recorder.h"
 #include "vpe/window/ui/display.h"
 #include "vpe/window/ui/imgui_helpers.h"
+#include "vpe/window/ui/panel_focus.h"
 #include "vpe/window/ui/widgets.h"
 #include "vpe/window/workers/image_maker.h"
 #include "vpe/window/workers/job.h"
@@ -198,6 +199,8 @@ class ExploreWindow {
   const OverlookView* overlook() const { return guide_.inside(); }
   // Returns what the status line says of the place under the cursor.
   const std::string& cursor_line() const { return cursor_text_; }
+  // Returns true while keys act in the panels.
+  bool keys_are_in_panels() const { return panel_focus_.is_on(); }
   bool is_recording() const { return recorder_.is_recording(); }
   const Welcome& welcome() const { return welcome_; }
   // Performs an action as its key would. Returns what is wrong, or "".
@@ -239,6 +242,8 @@ class ExploreWindow {
   void fly_to(const core::Place& place);
   QualityText quality_of_image() const;
   std::string copy_view();
+  std::optional<mars::LonLat> pointed_place() const;
+  bool handle_panel_keys(const Event& event);
   void request_image();
   std::vector<core::View> foreseen_views(const core::View& shown);
   bool take_image();  // returns true if there is a new one
@@ -284,6 +289,7 @@ class ExploreWindow {
   explore::DrawChooser chooser_;
   Display display_;
   Widgets widgets_;
+  PanelFocus panel_focus_;
   MapPanel map_;
   std::unique_ptr<MapPanel> large_map_;  // once it was shown
   MeasurePanel measure_;

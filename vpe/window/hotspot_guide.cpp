@@ -66,7 +66,6 @@ const explore::Hotspot* HotspotGuide::within_reach() const {
 
 std::string HotspotGuide::enter(const explore::Session& session) {
   if (inside_ != nullptr) return {};
-  if (hotspots_.empty()) return "there are no hotspots; --hotspots FILE defines them";
   if (within_reach() == nullptr) return "no hotspot is near enough to open its panorama";
   inside_ = std::move(ahead_);
   inside_index_ = ahead_index_;

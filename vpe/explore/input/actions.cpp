@@ -41,6 +41,8 @@ constexpr std::array kActions{
     ActionInfo{K::kFiles, "files", "open a file; make images, films and panoramas"},
     ActionInfo{K::kCopy, "copy", "copy the place under the cursor, and a command"},
     ActionInfo{K::kHelp, "help", "show or hide this help"},
+    ActionInfo{K::kPanelKeys, "panel-keys",
+               "keys act in the panels (arrows, Space, Enter), then the next; Esc: back"},
 };
 
 }  // namespace

@@ -38,6 +38,7 @@ enum class ActionKind {
   kFiles,
   kCopy,
   kHelp,
+  kPanelKeys,
 };
 
 struct Action {

@@ -68,6 +68,7 @@ std::vector<PressedBinding> make_pressed() {
       {{Key::kO, kCtrl}, {A::kFiles}},
       {{Key::kC, kCtrl}, {A::kCopy}},
       {{Key::kF1, kAlone}, {A::kHelp}},
+      {{Key::kF6, kAlone}, {A::kPanelKeys}},
   };
   for (int number = 1; number <= Action::kMaxBookmark; ++number) {
     const auto key = static_cast<Key>(static_cast<int>(Key::k0) + number);

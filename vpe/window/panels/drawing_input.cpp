@@ -26,14 +26,6 @@ bool is_letter(int code, char letter) {
 
 double reach_px() { return static_cast<double>(ImGui::GetFontSize()) * 0.6; }
 
-std::optional<mars::LonLat> place_at(const explore::Session& session, glm::dvec2 xy) {
-  const core::View view = session.view();
-  const glm::dvec3 ray = core::pixel_ray(view, xy.x, xy.y);
-  const double range_m = session.ground().cast_m(view.camera.position_m, ray);
-  if (!std::isfinite(range_m)) return std::nullopt;
-  return mars::lon_lat(view.camera.position_m + ray * range_m);
-}
-
 }  // namespace
 
 bool DrawingPanel::is_shown() const { return ImGui::GetFrameCount() - shown_frame_ <= 1; }
@@ -53,12 +45,12 @@ bool DrawingPanel::handle(const Event& event, std::optional<glm::dvec2> xy, bool
                           const explore::Session& session) {
   switch (event.kind) {
     case Event::Kind::kKeyPress:
-    case Event::Kind::kKeyRepeat: return !is_typing && handle_key(event);
+    case Event::Kind::kKeyRepeat: return !is_typing && handle_key(event, session);
     case Event::Kind::kPress: return xy && handle_press(event, *xy, session);
     case Event::Kind::kMove:
       if (pressed_ && (!xy || glm::length(*xy - *pressed_) > kClick_px)) pressed_.reset();
       if (!sketch_.held() || !xy) return false;
-      if (const auto place = place_at(session, *xy)) report(sketch_.drag(*place));
+      if (const auto place = session.place_at(*xy)) report(sketch_.drag(*place));
       return true;
     case Event::Kind::kRelease: {
       if (event.code != GLFW_MOUSE_BUTTON_LEFT) return false;
@@ -66,7 +58,7 @@ bool DrawingPanel::handle(const Event& event, std::optional<glm::dvec2> xy, bool
       sketch_.release();
       if (!std::exchange(pressed_, std::nullopt) || !xy) return held;
       last_click_ = {event.time_s, *xy};
-      if (const auto place = place_at(session, *xy))
+      if (const auto place = session.place_at(*xy))
         place_vertex(*place);
       else
         report("there is no ground under the cursor");
@@ -108,7 +100,7 @@ bool DrawingPanel::handle_press(const Event& event, glm::dvec2 xy, const explore
 
 void DrawingPanel::place_vertex(mars::LonLat place) { report(sketch_.click(place)); }
 
-bool DrawingPanel::handle_key(const Event& event) {
+bool DrawingPanel::handle_key(const Event& event, const explore::Session& session) {
   const bool ctrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
   const bool shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
   if ((event.modifiers & GLFW_MOD_ALT) != 0) return false;
@@ -131,6 +123,14 @@ bool DrawingPanel::handle_key(const Event& event) {
     case GLFW_KEY_KP_ENTER:
       if (sketch_.unfinished().empty()) return false;
       if (is_first) report(sketch_.finish());
+      return true;
+    case GLFW_KEY_V:
+    case GLFW_KEY_INSERT:
+      if (!is_first) return true;
+      if (const auto place = session.place_at({session.screen().width / 2.0, session.screen().height / 2.0}))
+        place_vertex(*place);
+      else
+        report("there is no ground in the middle of the view");
       return true;
     case GLFW_KEY_BACKSPACE: return sketch_.take_back();
     case GLFW_KEY_ESCAPE: return is_first && sketch_.cancel();

@@ -88,7 +88,7 @@ class DrawingPanel : public MapOverlay {
   bool is_at_rest() const { return measurer_->is_idle(); }
 
  private:
-  bool handle_key(const Event& event);
+  bool handle_key(const Event& event, const explore::Session& session);
   bool handle_press(const Event& event, glm::dvec2 xy, const explore::Session& session);
   bool is_shown() const;
   void place_vertex(mars::LonLat place);

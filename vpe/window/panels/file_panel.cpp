@@ -86,7 +86,8 @@ void FilePanel::draw_open(FileActions& actions, Widgets& widgets) {
   if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 4);
   const bool is_entered = widgets.text(
-      "##open", name_, "a planet file, DEM, flight, project or panorama; ~/ is your folder. Or drop it here.", "file to open");
+      "##open", name_, "a planet file, DEM, flight, project or panorama; ~/ is your folder. Or drop it here.",
+      "file to open");
   ImGui::SameLine();
   if ((widgets.button("Open") || is_entered) && !name_.empty()) actions.open = std::exchange(name_, {});
   for (std::size_t n = 0; n < recent_.size(); ++n) {

@@ -13,7 +13,9 @@ namespace {
 class Field {
  public:
   Field(const std::string& label, const core::KeyInfo& info, const core::KeyValue& value, Widgets& widgets)
-      : label_(label.c_str()), tip_(std::string(info.name) + ": " + core::allowed_text(info)), value_(value),
+      : label_(label.c_str()),
+        tip_(std::string(info.name) + ": " + core::allowed_text(info)),
+        value_(value),
         widgets_(widgets) {}
 
   std::optional<core::KeyValue> operator()(const core::NumberKey& key) const {
@@ -92,7 +94,8 @@ PreferencesActions draw_preferences(const ViewArea& area, double scale, const ex
                                     Widgets& widgets) {
   PreferencesActions actions;
   const double width = std::min(area.width, 640 * scale);
-  ImGui::SetNextWindowPos(at(area.x + (area.width - width) / 2, area.y + std::min(40 * scale, area.height / 8)));
+  ImGui::SetNextWindowPos(
+      at(area.x + (area.width - width) / 2, area.y + std::min(40 * scale, area.height / 8)));
   ImGui::SetNextWindowSize(at(width, area.height * 0.8));
   ImGui::Begin("preferences", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
@@ -100,7 +103,8 @@ PreferencesActions draw_preferences(const ViewArea& area, double scale, const ex
   widgets.group("preferences");
   if (widgets.button("Close", "Esc")) actions.closes = true;
   ImGui::SameLine();
-  if (widgets.button("As at first", "all preferences get their defaults")) actions.changed = explore::Preferences{};
+  if (widgets.button("As at first", "all preferences get their defaults"))
+    actions.changed = explore::Preferences{};
   ImGui::Separator();
   ImGui::BeginChild("keys");
   if (ImGui::BeginTable("keys", 2)) {

@@ -255,7 +255,8 @@ void Display::begin_frame() {
 #endif
   ImGui::NewFrame();
   // Tab leads from one text to the next; elsewhere it is a key of the window.
-  ImGui::PushAllowKeyboardFocus(ImGui::GetIO().WantTextInput);
+  const ImGuiIO& io = ImGui::GetIO();
+  ImGui::PushAllowKeyboardFocus(io.WantTextInput || (io.ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0);
 }
 
 bool Display::has_input_left() {

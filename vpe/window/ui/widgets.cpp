@@ -165,9 +165,8 @@ bool Widgets::text(const char* label, std::string& value, const char* tip, const
   if (is_refused) refused->second.instead = value;
   if (editing_ != ImGui::GetID(label)) draft = is_refused ? refused->second.text : value;
   if (is_refused) ImGui::PushStyleColor(ImGuiCol_Text, {1, 0.5F, 0.4F, 1});
-  const bool entered =
-      ImGui::InputTextWithHint(label, hint, &draft,
-                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const bool entered = ImGui::InputTextWithHint(
+      label, hint, &draft, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (is_refused) ImGui::PopStyleColor();
   record(label);
   show_tip(tip);

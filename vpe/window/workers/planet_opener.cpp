@@ -39,8 +39,6 @@ void PlanetMaker::begin() {
   });
 }
 
-std::optional<ShownPlanet> PlanetMaker::take() {
-  return is_ready(making_) ? making_.get() : std::nullopt;
-}
+std::optional<ShownPlanet> PlanetMaker::take() { return is_ready(making_) ? making_.get() : std::nullopt; }
 
 }  // namespace vpe::window
