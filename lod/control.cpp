@@ -59,8 +59,16 @@ bool is_in_range(const ControlFunction& f) {
          f.weight >= 0.0 && std::isfinite(f.x_factor) && f.x_factor > 0.0;
 }
 
-ControlTerm term(const ControlFunction& function, double x) {
-  return {x, function.weight == 0.0 ? 0.0 : levels(function, x), function.weight};
+ControlTerm term(const ControlFunction& function, double x, double x_factor = 1.0) {
+  return {x, function.weight == 0.0 ? 0.0 : levels(function, x * x_factor), function.weight};
+}
+
+// Requires the terms by centre and interest.
+double degrade_weight(const LevelControl& control, const ControlTerms& terms, double centre_x) {
+  const DegradeWeights& weights = control.degrade;
+  if (terms.interest.levels > 0.0) return weights.interest;
+  const double share = std::clamp(1.0 - centre_x, 0.0, 1.0);
+  return weights.distance + share * (weights.centre - weights.distance);
 }
 
 }  // namespace
@@ -120,21 +128,27 @@ ControlTerms control_terms(const LevelControl& control, const CentreOfView& cent
                            bool evaluate_all) {
   ControlTerms terms;
   const bool by_distance = control.metric == core::LodMetric::kDistance;
-  terms.distance = term(control.distance, input.min_distance_m);
+  const bool is_uneven = !is_even(control.degrade);
   terms.centre.weight = control.centre.weight;
-  if (evaluate_all || control.centre.weight > 0.0) {
+  if (evaluate_all || is_uneven || control.centre.weight > 0.0) {
     terms.centre_angle_rad = least_angle_rad(centre, input.volume);
     terms.centre = term(control.centre, centre_distance(centre, terms.centre_angle_rad));
   }
   terms.interest.weight = control.interest_weight;
   if (control.interest_weight > 0.0) terms.interest.levels = interest_levels(control.regions, input.rect);
+  if (is_uneven) terms.degrade_weight = degrade_weight(control, terms, terms.centre.x);
+  terms.distance = term(control.distance, input.min_distance_m, degrade_factor(control, terms.degrade_weight));
   terms.sum =
       (by_distance ? terms.distance.weighted() : 0.0) + terms.centre.weighted() + terms.interest.weighted();
   return terms;
 }
 
+double degrade_factor(const LevelControl& control, double degrade_weight) {
+  return degrade_weight == 1.0 ? 1.0 : std::pow(control.coarsening, degrade_weight - 1.0);
+}
+
 bool is_neutral(const LevelControl& control) {
-  return control.metric == core::LodMetric::kError && control.centre.weight == 0.0 &&
+  return control.metric == core::LodMetric::kError && control.centre.weight == 0.0 && is_even(control.degrade) &&
          (control.regions.empty() || control.interest_weight == 0.0);
 }
 
@@ -153,6 +167,12 @@ void check(const LevelControl& control) {
     throw std::invalid_argument(
         "select: scale, offset and weight of level control must be finite, scale and weight not negative");
   }
+  for (const double weight : {control.degrade.distance, control.degrade.centre, control.degrade.interest}) {
+    if (!std::isfinite(weight) || weight < 0.0)
+      throw std::invalid_argument("select: the weights of what a budget takes must be finite and not negative");
+  }
+  if (!std::isfinite(control.coarsening) || control.coarsening < 1.0)
+    throw std::invalid_argument("select: the coarsening must be finite and at least 1");
 }
 
 }  // namespace lod

@@ -36,7 +36,7 @@ struct ControlFunction {
   double offset = 0;            // levels
   double weight = 0;            // >= 0; 0: the function is not evaluated
   vpe::core::LevelTable table;  // replaces scale and offset if it has rows
-  double x_factor = 1;          // > 0, factor on x; a time budget raises it, which makes tiles coarser
+  double x_factor = 1;  // > 0, factor on x; a time budget raises that of the distance, which makes tiles coarser
   bool operator==(const ControlFunction&) const = default;
 };
 
@@ -55,6 +55,20 @@ ControlRegion control_region(const vpe::core::InterestRegion& region, double pla
 // Returns the sum of the levels of all regions at a tile.
 int interest_levels(std::span<const ControlRegion> regions, const mars::ChartRect& rect);
 
+// Weights of what a budget takes: by how many of the levels that it takes tiles become coarser, according to where
+// they are (the preference weightings of Hitchner 1992, section 3.3.4). With weights of 1 all lose alike, with 0 a
+// tile loses nothing. `centre` holds at the image centre and fades into `distance` up to half an image height from it;
+// `interest` holds in regions that ask for more levels.
+struct DegradeWeights {
+  double distance = 1;  // >= 0, as the next
+  double centre = 1;
+  double interest = 1;
+  bool operator==(const DegradeWeights&) const = default;
+};
+
+// Returns true if all tiles lose alike.
+inline bool is_even(const DegradeWeights& weights) { return weights == DegradeWeights(); }
+
 // Describes the control of one view. The default has no effect: metric kError, weights and regions that do
 // nothing.
 struct LevelControl {
@@ -63,6 +77,8 @@ struct LevelControl {
   ControlFunction centre;
   double interest_weight = 1;
   std::vector<ControlRegion> regions;
+  DegradeWeights degrade;
+  double coarsening = 1;  // >= 1, what a time budget takes at weight 1: a factor on errors, or on distances
   bool operator==(const LevelControl&) const = default;
 };
 
@@ -96,6 +112,7 @@ struct ControlTerms {
   ControlTerm centre;
   ControlTerm interest;
   double centre_angle_rad = 0;
+  double degrade_weight = 1;  // of the tile, between the weights of LevelControl::degrade
   double sum = 0;  // of the terms that the metric uses; may be infinite
 };
 
@@ -110,7 +127,10 @@ struct ControlInput {
 ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlInput& input,
                            bool evaluate_all = false);
 
-// Returns true if the metric is kError and the sum is 0 everywhere.
+// Returns the factor on the coarsening of LevelControl that a tile's weight makes: 1 where all lose alike.
+double degrade_factor(const LevelControl& control, double degrade_weight);
+
+// Returns true if the metric is kError, the sum is 0 everywhere, and all tiles lose alike.
 bool is_neutral(const LevelControl& control);
 
 // Metric kError: returns the levels by which a tile's error counts more, at most kMaxShift either way.

@@ -6,13 +6,15 @@ namespace lod {
 
 namespace {
 
-LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const SelectedTile& tile) {
+LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const SelectedTile& tile,
+                      double degrade_weight) {
   if (is_full_grid(info, tile.variant)) return LevelReason::kFinestThere;
   if (options.control.metric == vpe::core::LodMetric::kDistance) {
     const double number = level_count(tile.key, tile.variant, static_cast<int>(info.variants.size()));
     return number >= tile.control ? LevelReason::kLevelReached : LevelReason::kBudgetSpent;
   }
-  return tile.screen_space_error_px * std::exp2(tile.control) <= options.tolerance_px
+  return tile.screen_space_error_px * std::exp2(tile.control) <=
+                 options.tolerance_px * degrade_factor(options.control, degrade_weight)
              ? LevelReason::kWithinTolerance
              : LevelReason::kBudgetSpent;
 }
@@ -24,6 +26,7 @@ const char* to_string(LevelReason reason) {
     case LevelReason::kFinestThere: return "finest there";
     case LevelReason::kWithinTolerance: return "within tolerance";
     case LevelReason::kLevelReached: return "level reached";
+    case LevelReason::kReplaced: return "replaced by an ancestor";
     case LevelReason::kBudgetSpent: break;
   }
   return "budget spent";
@@ -57,7 +60,7 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
     } else {
       e.shift = tile.control;
     }
-    e.reason = reason_of(options, info, tile);
+    e.reason = reason_of(options, info, tile, e.terms.degrade_weight);
     all.push_back(e);
   }
   return all;

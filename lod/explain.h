@@ -18,9 +18,10 @@ enum class LevelReason {
   kWithinTolerance,  // metric kError: its error, shifted by control, is within the tolerance
   kLevelReached,     // metric kDistance: it has the wanted level or a finer one
   kBudgetSpent,      // the triangles were spent before it could be refined
+  kReplaced,         // by rays: an ancestor is cast in its place, as the tile is not there
 };
 
-// Returns "finest there", "within tolerance", "level reached" or "budget spent".
+// Returns "finest there", "within tolerance", "level reached", "budget spent" or "replaced by an ancestor".
 const char* to_string(LevelReason reason);
 
 // Explains one tile.

@@ -6,6 +6,10 @@ namespace lod {
 
 namespace core = vpe::core;
 
+DegradeWeights degrade_weights(const core::SettingsValues& settings) {
+  return {settings.degrade_distance, settings.degrade_centre, settings.degrade_interest};
+}
+
 LevelControl level_control(const core::DrawRequest& request, double planet_radius_m) {
   const core::SettingsValues& s = request.settings;
   LevelControl control;
@@ -14,6 +18,8 @@ LevelControl level_control(const core::DrawRequest& request, double planet_radiu
                       s.lod_distance_table, request.coarsening};
   control.centre = {s.lod_centre_scale, s.lod_centre_offset, s.lod_centre_weight, s.lod_centre_table, 1.0};
   control.interest_weight = s.lod_interest_weight;
+  control.degrade = degrade_weights(s);
+  control.coarsening = request.coarsening;
   for (const core::InterestRegion& region : request.interest) {
     control.regions.push_back(control_region(region, planet_radius_m));
   }

@@ -9,6 +9,9 @@
 
 namespace lod {
 
+// Returns the weights of what a budget takes.
+DegradeWeights degrade_weights(const vpe::core::SettingsValues& settings);
+
 // Returns the level control of a request.
 LevelControl level_control(const vpe::core::DrawRequest& request, double planet_radius_m);
 

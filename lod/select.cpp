@@ -16,6 +16,9 @@ using vpe::base::mutated;
 
 namespace {
 
+// Errors are weighed by their ratio to the tolerance, of which 0 has none.
+constexpr double kLeastTolerance_px = 1.0 / 64;
+
 void check(const SelectOptions& options, const SelectView& view) {
   if (!std::isfinite(view.camera_m.x) || !std::isfinite(view.camera_m.y) || !std::isfinite(view.camera_m.z)) {
     throw std::invalid_argument("select: the camera's position is not finite");
@@ -67,7 +70,8 @@ class Selector {
         out_(out),
         by_distance_(options.control.metric == vpe::core::LodMetric::kDistance),
         controlled_(!is_neutral(options.control)),
-        accepted_urgency_(by_distance_ ? 0.0 : options.tolerance_px) {}
+        accepted_urgency_(by_distance_ ? 0.0 : options.tolerance_px),
+        full_tolerance_px_(std::max(options.tolerance_px / options.control.coarsening, kLeastTolerance_px)) {}
 
   void run() {
     heap_.clear();
@@ -144,9 +148,18 @@ class Selector {
   // lacks.
   double urgency(const Candidate& c) const {
     if (!controlled_) return c.screen_space_error_px;
-    if (!by_distance_) return c.screen_space_error_px * std::exp2(c.control);
+    if (!by_distance_) return weighed(c.screen_space_error_px * std::exp2(c.control), c.degrade_weight);
     const TileInfo& tile = tree_[c.index];
-    return c.control - level_count(tile.key, c.variant, static_cast<int>(tile.variants.size()));
+    const double lacks = c.control - level_count(tile.key, c.variant, static_cast<int>(tile.variants.size()));
+    return lacks > 0.0 && c.degrade_weight != 1.0 ? lacks / c.degrade_weight : lacks;
+  }
+
+  // Returns the error of weight 1 that takes as large a budget: both are a tolerance times the same factor, to the
+  // power of their weights. So one order serves all weights, under a limit of triangles and under a coarsening.
+  double weighed(double error_px, double weight) const {
+    if (weight == 1.0 || !(error_px > full_tolerance_px_)) return error_px;
+    if (weight == 0.0) return std::numeric_limits<double>::infinity();
+    return full_tolerance_px_ * std::pow(error_px / full_tolerance_px_, 1.0 / weight);
   }
 
   void measure(Candidate& c, const cull::BoundingRegion& region) const {
@@ -191,9 +204,10 @@ class Selector {
     c.off_axis_magnification = std::min(most_magnification, sky_magnification(region, volume));
     measure(c, region);
     if (controlled_) {
-      const double sum =
-          control_terms(options_.control, view_.centre, {volume, region.rect, c.min_distance_m}).sum;
-      c.control = by_distance_ ? wanted_level_count(sum) : lod::level_shift(sum);
+      const ControlTerms terms =
+          control_terms(options_.control, view_.centre, {volume, region.rect, c.min_distance_m});
+      c.control = by_distance_ ? wanted_level_count(terms.sum) : lod::level_shift(terms.sum);
+      c.degrade_weight = terms.degrade_weight;
       c.urgency = urgency(c);
     }
     replacement.triangles += triangles(c);
@@ -284,7 +298,8 @@ class Selector {
   Selection& out_;
   bool by_distance_;
   bool controlled_;
-  double accepted_urgency_;  // urgency up to which a tile is not refined
+  double accepted_urgency_;   // urgency up to which a tile is not refined
+  double full_tolerance_px_;  // before coarsening
 };
 
 void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,

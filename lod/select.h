@@ -13,7 +13,9 @@
 // Level control (lod/control.h) changes that. With the metric kError a tile's screen-space error counts
 // 2^levels times when the largest is sought and compared with the tolerance. With the metric kDistance the
 // error decides nothing: the tile that lacks most levels is refined (of equals the one with the largest error)
-// until none lacks any. With both metrics the reported error is the true one.
+// until none lacks any. With both metrics the reported error is the true one. Weights of what a budget takes
+// (DegradeWeights) change which tile is refined first, and how far: a tile of weight w is accepted at an error of the
+// tolerance times coarsening^w.
 //
 // Typical usage:
 //   SelectOptions options;
@@ -105,6 +107,7 @@ class SelectScratch {
     double off_axis_magnification;
     double chord2;
     double control;
+    double degrade_weight = 1;
     TileTree::Index index;
     int variant;
     cull::PlaneMask mask;

@@ -93,7 +93,8 @@ TEST(BackendChoice, RaysKeepToTheTolerance) {
   EXPECT_EQ(settings({}, 1000).ray_cell_px, core::RayLimits::kMostCell_px);
   EXPECT_EQ(settings({}, 0).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({}, 0.001).ray_mode, core::RayMode::kExact);
-  // A named key of rays leaves the settings as they are.
+  EXPECT_EQ(settings({"rays.fovea=0.3"}).ray_mode, core::RayMode::kMultires);
+  // Another named key of rays leaves the settings as they are.
   EXPECT_EQ(settings({"rays.mode=exact"}).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({"rays.cell=2"}).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({"rays.mode=multires", "rays.cell=2"}).ray_cell_px, 2);

@@ -65,6 +65,8 @@ TEST(ContourRanges, AskForGroundWithoutColoursWhateverTheImageIsMadeOf) {
   request.settings.lod_triangles = 1000;
   request.settings.lod_metric = core::LodMetric::kDistance;
   request.settings.lod_centre_weight = 2;
+  request.settings.ray_fovea = 0.3;
+  request.settings.degrade_distance = request.settings.degrade_centre = request.settings.degrade_interest = 2;
   request.settings.mode = core::Mode::kWireframe;
   request.interest = {{10, 20, 1000, -3}};
   request.coarsening = 2;
@@ -79,6 +81,10 @@ TEST(ContourRanges, AskForGroundWithoutColoursWhateverTheImageIsMadeOf) {
   EXPECT_EQ(finer.settings.lod_centre_weight, 0);
   EXPECT_EQ(finer.settings.ray_mode, core::RayMode::kMultires);
   EXPECT_EQ(finer.settings.ray_cell_px, 0.25);
+  EXPECT_FALSE(finer.settings.ray_fovea);
+  EXPECT_EQ(finer.settings.degrade_distance, 1);
+  EXPECT_EQ(finer.settings.degrade_centre, 1);
+  EXPECT_EQ(finer.settings.degrade_interest, 1);
   EXPECT_TRUE(finer.interest.empty());
   EXPECT_EQ(finer.coarsening, 1);
   // The material stays, so that the textures of the image are kept.

@@ -72,6 +72,7 @@ class ColumnEdges {
     for (int lane = 0; lane < voxel::kMaxLanes; ++lane) {
       group_.row[lane] = 0;
       group_.row_end[lane] = 1;
+      group_.row_stop[lane] = 1;
       for (int k = 0; k < 3; ++k) {
         group_.azimuth[k][lane] = azimuth[k];
         group_.normal[k][lane] = normal[k];

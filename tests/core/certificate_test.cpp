@@ -33,10 +33,13 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.exaggeration = 2;
   c.corner_stretch = 2.5;
   c.is_below_ground = true;
+  c.thinning_px = 2.125;
+  c.middle_bound_px = 0.25;
   nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find(" " + c.synthetic), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
+  EXPECT_NE(meaning.find("thinning_px"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
   EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
   EXPECT_NE(meaning.find("below the ground"), std::string::npos);
@@ -47,6 +50,8 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                                   {"quantisation_px", 0.0001},
                                   {"shift_bound_px", 0.5001},
                                   {"picture_bound_px", 0.375},
+                                  {"thinning_px", 2.125},
+                                  {"middle_bound_px", 0.25},
                                   {"tolerance_px", 1.0},
                                   {"tiles_drawn", 12},
                                   {"tiles_missing", 3},

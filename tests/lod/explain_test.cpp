@@ -94,6 +94,7 @@ TEST(Explain, EveryReasonIsThatOfSelection) {
           ASSERT_LE(e.wanted_level, e.key.level);
           break;
         case LevelReason::kBudgetSpent: spent = true; break;
+        case LevelReason::kReplaced: FAIL(); break;
       }
       ++seen[e.reason];
     }

@@ -207,6 +207,45 @@ TEST_P(RendererContract, LevelControlActsOrIsRefused) {
   EXPECT_EQ(draw->draw(off).frame.range_m, before.frame.range_m);
 }
 
+// Weights of what a budget takes change which tiles become coarser, and nothing while no budget takes any.
+TEST_P(RendererContract, WeightsOfABudgetMoveItsLosses) {
+  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 20000);
+  const paging::Surface surface(planet, std::size_t{1} << 26);
+  const auto draw = make(planet);
+  core::DrawRequest even = request_for({20, 30, 400000, 40, -60, 0}, planet->radius_m(), 64, 48);
+  even.settings.lod_tolerance_px = even.settings.ray_cell_px = 0.1;
+  even.settings.ray_mode = core::RayMode::kMultires;
+  core::DrawRequest coarse = even;
+  coarse.coarsening = 16;
+  const core::DrawResult full = draw->draw(even);
+  const core::DrawResult lossy = draw->draw(coarse);
+  std::vector<core::SettingsValues> weights(3, even.settings);
+  weights[0].degrade_distance = 0;
+  weights[1].degrade_centre = 0;
+  weights[2].degrade_interest = 0;
+  for (std::size_t n = 0; n < weights.size(); ++n) {
+    SCOPED_TRACE(n);
+    core::DrawRequest weighed = coarse;
+    core::DrawRequest reference = coarse;
+    weighed.settings = weights[n];
+    if (n == 2) weighed.interest = reference.interest = {{20, 30, 200000, 1}};
+    const core::DrawResult result = draw->draw(weighed);
+    EXPECT_GT(result.stats.tiles_drawn, draw->draw(reference).stats.tiles_drawn);
+    EXPECT_LT(result.stats.tiles_drawn, full.stats.tiles_drawn * (n == 2 ? 2 : 1));
+    EXPECT_LE(shift_over_bound(result, surface, weighed), 1);
+    weighed.coarsening = reference.coarsening = 1;
+    const core::DrawResult at_rest = draw->draw(weighed);
+    const core::DrawResult expected = draw->draw(reference);
+    EXPECT_EQ(at_rest.frame.colour, expected.frame.colour);
+    EXPECT_EQ(at_rest.frame.range_m, expected.frame.range_m);
+    core::DrawRequest exact = weighed;
+    exact.interest.clear();
+    exact.settings.ray_mode = core::RayMode::kExact;
+    EXPECT_NE(vpe::voxel::why_not(exact).find("degrade."), std::string::npos);
+  }
+  EXPECT_LT(lossy.stats.tiles_drawn, full.stats.tiles_drawn);
+}
+
 // A wall close before a camera that is high above the foot of the wall.
 TEST_P(RendererContract, WallsBesideTheCameraAreNotSeenThrough) {
   const auto planet = build_fake(

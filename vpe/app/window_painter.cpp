@@ -57,7 +57,7 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
 core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance) {
   core::SettingsValues& values = request.settings;
   if (values.ray_mode != core::RayMode::kExact) return request;
-  if (!within_tolerance && voxel::multires_control(request).empty()) return request;
+  if (!within_tolerance && voxel::multires_control(request).empty() && !values.ray_fovea) return request;
   values.ray_mode = core::RayMode::kMultires;
   values.ray_cell_px =
       std::clamp(values.lod_tolerance_px, core::RayLimits::kLeastCell_px, core::RayLimits::kMostCell_px);

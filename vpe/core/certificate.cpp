@@ -22,6 +22,12 @@ std::string meaning(const Certificate& c) {
     text += " Pixels are those of the picture's middle; towards its corners they are stretched, up to " +
             base::format_rounded(c.corner_stretch, 2) + " times.";
   }
+  if (c.thinning_px > 0) {
+    text +=
+        " Outside of the picture's middle (rays.fovea) rays are two pixels apart: thinning_px is the part of "
+        "shift_bound_px that this adds, and what is narrower than two pixels may be missing there. "
+        "middle_bound_px: shift_bound_px of the middle.";
+  }
   if (c.is_below_ground) text += " The camera is below the ground: nothing is claimed about the picture.";
   if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped or grey.";
   if (!c.synthetic.empty()) text += " " + c.synthetic;
@@ -57,6 +63,11 @@ nlohmann::ordered_json to_json(const Certificate& c) {
   json["shift_bound_px"] = c.shift_bound_px;
   json["picture_bound_px"] = nullptr;
   if (c.image_bound_px) json["picture_bound_px"] = *c.image_bound_px;
+  if (c.thinning_px > 0) {
+    json["thinning_px"] = c.thinning_px;
+    json["middle_bound_px"] = nullptr;
+    if (c.middle_bound_px) json["middle_bound_px"] = *c.middle_bound_px;
+  }
   json["tolerance_px"] = c.tolerance_px;
   json["tiles_drawn"] = c.tiles_drawn;
   json["tiles_missing"] = c.tiles_missing;

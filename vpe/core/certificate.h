@@ -23,6 +23,11 @@ struct Certificate {
   // The same bound from the ranges at which tiles appear in the image. It is tighter, because a tile need not
   // be visible where it is nearest. Absent without a range image.
   std::optional<double> image_bound_px;
+  // Part of shift_bound_px: by how much pixels may be off because rays are thinned where they lie (rays.fovea); 0
+  // where each pixel has its own. Outside of the middle a ridge narrower than two pixels may be missing.
+  double thinning_px = 0;
+  // The bound of the middle, where rays are not thinned. Absent if all of the image has one density.
+  std::optional<double> middle_bound_px;
   double tolerance_px = 0;  // of the request
   int tiles_drawn = 0;
   int tiles_missing = 0;

@@ -46,6 +46,7 @@ struct SubRectangle {
   int y = 0;
   int width = 0;
   int height = 0;
+  bool operator==(const SubRectangle&) const = default;
 };
 
 // Describes the camera and the image. Tiles of posters, facets of panoramas and images of stereo pairs are

@@ -59,7 +59,7 @@ FramePrefetcher::~FramePrefetcher() {
 }
 
 bool FramePrefetcher::can_cast(const core::DrawRequest& next) const {
-  return pool_.threads() > 1 && next.settings.samples <= 1 &&
+  return pool_.threads() > 1 && next.settings.samples <= 1 && !next.settings.ray_fovea &&
          pixels_of(next.view) * sizeof(float) * kRangeDivisor <= budget_;
 }
 

@@ -31,7 +31,7 @@ class FramePrefetcher {
  public:
   // `caster`, `painter` and `pool` must outlive this. `budget_bytes` limits the ranges of the next frame to an
   // eighth of it. Smaller: large frames are not cast early; larger: more memory for them. Frames with several
-  // samples, and pools of one thread, only get their tiles read.
+  // samples or rays.fovea, and pools of one thread, only get their tiles read.
   FramePrefetcher(const RangeCaster& caster, const ImagePainter& painter, base::ThreadPool& pool,
                   std::size_t budget_bytes);
   // Stops all work first.

@@ -24,6 +24,8 @@
 #include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
 #include "vpe/voxel/downsampled_view.h"
+#include "vpe/voxel/explain_tiles.h"
+#include "vpe/voxel/foveated_image.h"
 #include "vpe/voxel/frame_prefetcher.h"
 #include "vpe/voxel/paint/image_painter.h"
 #include "vpe/voxel/tile_loader.h"
@@ -46,6 +48,23 @@ constexpr double kPaintShare = 0.4;
 constexpr std::size_t kMostExpected = 3;
 constexpr std::size_t kMostKeptPixels = std::size_t{1} << 24;
 
+std::size_t pixels_of(const core::View& view) {
+  const glm::ivec2 size = core::drawn_size(view);
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+}
+
+// Returns the values of a rectangle of the drawn part, row by row.
+std::vector<float> cut_out(std::span<const float> values, const core::SubRectangle& part,
+                           const core::SubRectangle& rectangle) {
+  std::vector<float> out;
+  out.reserve(static_cast<std::size_t>(rectangle.width) * static_cast<std::size_t>(rectangle.height));
+  for (int y = rectangle.y; y < rectangle.y + rectangle.height; ++y) {
+    const auto row = values.begin() + std::ptrdiff_t{y - part.y} * part.width + (rectangle.x - part.x);
+    out.insert(out.end(), row, row + rectangle.width);
+  }
+  return out;
+}
+
 class RayRenderer : public core::Renderer {
  public:
   RayRenderer(std::shared_ptr<const paging::PlanetFile> planet, const RayOptions& options)
@@ -54,6 +73,7 @@ class RayRenderer : public core::Renderer {
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads),
         max_image_bytes_(options.max_image_bytes),
+        explained_(options.explained),
         prefetcher_(caster_, painter_, pool_, options.memory_bytes),
         loader_(caster_, painter_, options.threads) {}
 
@@ -70,8 +90,11 @@ class RayRenderer : public core::Renderer {
         : fallbacks(store, request.settings.exaggeration, rule), reading{rule} {}
     TileFallbacks fallbacks;
     ImagePainter::Reading reading;
+    std::vector<AbsentPage> absent_colours;  // of all that was painted
     ColumnWalk::Usage usage;
     std::int64_t nodata_pixels = 0;
+    std::optional<double> middle_px;  // screen-space error of the middle of a foveated image
+    bool is_thinned = false;
   };
 
   core::DrawResult draw_image(const core::DrawRequest& request);
@@ -83,6 +106,14 @@ class RayRenderer : public core::Renderer {
   ColumnWalk::Usage cast_in_bands(const core::View& view, const RangeOptions& options, std::span<float> range_m,
                                   TileFallbacks& fallbacks);
   void draw_samples(const core::DrawRequest& request, core::Frame& frame, Image& image);
+  // Casts the view and, unless `colour` is empty, paints it; does not use the prefetcher.
+  void draw_one(const core::DrawRequest& request, std::span<float> range_m, std::span<base::Rgb> colour,
+                Image& image);
+  void draw_foveated(const core::DrawRequest& request, const FoveaPlan& plan, std::span<float> range_m,
+                     std::span<base::Rgb> colour, Image& image);
+  // Returns the number of nodata pixels. Smooths edges where there is one sample a pixel.
+  std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
+                     std::span<base::Rgb> colour, Image& image);
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
                             const Image& image) const;
   // States what the image lacked, and lets the loader load it.
@@ -94,6 +125,7 @@ class RayRenderer : public core::Renderer {
   ImagePainter painter_;
   base::ThreadPool pool_;
   std::size_t max_image_bytes_;
+  std::vector<lod::TileExplanation>* explained_;
   FramePrefetcher prefetcher_;
   TileLoader loader_;
   SectorCaster hint_sectors_;
@@ -142,6 +174,12 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   c.geometric_error_m = usage.geometric_error_m;
   c.screen_space_error_px = usage.screen_space_error_px;
   c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
+  if (image.is_thinned) {
+    // Of the whole planet: what lies beside a ray may be ground that no ray has met.
+    c.thinning_px = thinning_px(planet_->tree().steepest_slope(request.settings.exaggeration));
+    c.shift_bound_px += c.thinning_px;
+    if (image.middle_px) c.middle_bound_px = *image.middle_px + c.quantisation_px;
+  }
   for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
   if (request.want_colour) {
@@ -160,24 +198,77 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   return c;
 }
 
+std::int64_t RayRenderer::paint(const core::DrawRequest& request, std::span<const float> range_m,
+                                std::span<base::Rgb> colour, Image& image) {
+  const bool smooth = request.settings.smooth_edges && request.settings.samples <= 1 &&
+                      request.view.projection == core::Projection::kPerspective;
+  inverse_depth_.resize(smooth ? range_m.size() : 0);
+  const std::int64_t nodata_pixels =
+      painter_.paint(request, range_m, colour, inverse_depth_, pool_, &image.reading);
+  image.absent_colours.insert(image.absent_colours.end(), image.reading.absent.begin(),
+                              image.reading.absent.end());
+  const glm::ivec2 size = core::drawn_size(request.view);
+  if (smooth) core::smooth_edges(colour, inverse_depth_, size.x, size.y, pool_);
+  return nodata_pixels;
+}
+
+void RayRenderer::draw_one(const core::DrawRequest& request, std::span<float> range_m,
+                           std::span<base::Rgb> colour, Image& image) {
+  if (const std::optional<FoveaPlan> plan = fovea_plan(request)) {
+    draw_foveated(request, *plan, range_m, colour, image);
+    return;
+  }
+  const RangeOptions options = range_options(request, planet_->radius_m());
+  image.usage.add(cast_in_bands(request.view, options, range_m, image.fallbacks), planet_->tree());
+  if (!colour.empty()) image.nodata_pixels += paint(request, range_m, colour, image);
+}
+
+void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPlan& plan,
+                                std::span<float> range_m, std::span<base::Rgb> colour, Image& image) {
+  RangeOptions options = range_options(request, planet_->radius_m());
+  core::DrawRequest outer = request;
+  outer.view = plan.outer;
+  std::vector<float> outer_m(pixels_of(outer.view));
+  ColumnWalk::Usage usage = cast_in_bands(outer.view, options, outer_m, image.fallbacks);
+  usage.scale_px(core::focal_px(request.view) / core::focal_px(outer.view));
+  image.usage.add(usage, planet_->tree());
+  image.is_thinned = true;
+  core::DrawRequest dense = request;
+  dense.view.part = plan.dense;
+  if (plan.dense.width > 0) {
+    options.only = plan.dense;
+    usage = cast_in_bands(request.view, options, range_m, image.fallbacks);
+    image.middle_px = std::max(image.middle_px.value_or(0), usage.screen_space_error_px);
+    image.usage.add(usage, planet_->tree());
+  }
+  spread_ranges(plan, request.view, outer_m, pool_, range_m);
+  if (colour.empty()) return;
+  std::vector<base::Rgb> outer_colour(outer_m.size());
+  const std::int64_t nodata_pixels = paint(outer, outer_m, outer_colour, image);
+  image.nodata_pixels += nodata_pixels * static_cast<std::int64_t>(colour.size()) /
+                         static_cast<std::int64_t>(outer_colour.size());
+  std::vector<base::Rgb> dense_colour;
+  if (plan.dense.width > 0) {
+    const std::vector<float> dense_m = cut_out(range_m, core::drawn_part(request.view), plan.dense);
+    dense_colour.resize(dense_m.size());
+    paint(dense, dense_m, dense_colour, image);
+  }
+  merge_colours(plan, request.view, {outer_colour, dense_colour}, pool_, colour);
+}
+
 // Draws a complete image for each sample and takes their mean. The range is that of the pixel's centre.
 void RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame, Image& image) {
-  const RangeOptions options = range_options(request, planet_->radius_m());
   const std::span<const glm::dvec2> offsets = sample_offsets(request.settings.samples);
   std::vector<glm::ivec3> sum(frame.colour.size(), glm::ivec3(0));
   std::vector<float> range(frame.range_m.size());
   core::DrawRequest moved = request;
-  LackingTiles lacking;
   for (const glm::dvec2& offset : offsets) {
     moved.view = shifted(request.view, offset);
-    image.usage.add(cast_in_bands(moved.view, options, range, image.fallbacks));
-    image.nodata_pixels += painter_.paint(moved, range, frame.colour, {}, pool_, &image.reading);
-    lacking.colours.insert(lacking.colours.end(), image.reading.absent.begin(), image.reading.absent.end());
+    draw_one(moved, range, frame.colour, image);
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  image.reading.absent = std::move(lacking.colours);
-  if (request.want_range) image.usage.add(cast_in_bands(request.view, options, frame.range_m, image.fallbacks));
+  if (request.want_range) draw_one(request, frame.range_m, {}, image);
   if (request.paging.wait) prefetcher_.begin(request);
   const int n = static_cast<int>(offsets.size());
   image.nodata_pixels /= n;
@@ -212,7 +303,8 @@ ColumnWalk::Usage RayRenderer::cast_in_bands(const core::View& view, const Range
     const std::size_t count = std::min(rows, height - y);
     core::View band = view;
     band.part = {whole.x, whole.y + static_cast<int>(y), whole.width, static_cast<int>(count)};
-    usage.add(caster_.cast(band, options, pool_, range_m.subspan(y * width, count * width), &fallbacks));
+    usage.add(caster_.cast(band, options, pool_, range_m.subspan(y * width, count * width), &fallbacks),
+              planet_->tree());
   }
   return usage;
 }
@@ -269,7 +361,7 @@ std::vector<TileLoader::Expected> RayRenderer::expected_tiles(const core::DrawRe
 
 void RayRenderer::finish_paging(const core::DrawRequest& request, const Image& image,
                                 core::DrawResult& result) {
-  const LackingTiles lacking{request.settings.exaggeration, image.fallbacks.absent(), image.reading.absent};
+  const LackingTiles lacking{request.settings.exaggeration, image.fallbacks.absent(), image.absent_colours};
   result.missing = missing_tiles(planet_->tree(), lacking);
   if (!image.reading.failure_of_points.empty())
     result.missing.push_back({"of flat colours", image.reading.failure_of_points, true});
@@ -298,7 +390,7 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
 
 void RayRenderer::check_size(const core::DrawRequest& request) const {
   const glm::ivec2 size = core::drawn_size(request.view);
-  const std::size_t bytes = ray_image_bytes(std::int64_t{size.x} * size.y, request.settings.samples);
+  const std::size_t bytes = ray_image_bytes(request);
   if (bytes <= max_image_bytes_) return;
   const auto megabytes = [](std::size_t n) { return std::to_string((n + 0xfffff) >> 20); };
   throw std::runtime_error("an image of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
@@ -327,6 +419,7 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   planet_->tree().require_drawable(request.settings.exaggeration);
   if (!request.paging.wait) prefetcher_.stop();
   const bool reads_all = loader_.begin(request);
+  if (explained_ != nullptr) explained_->clear();
   if (is_below_ground(request)) {
     core::DrawResult below;
     below.certificate = certify(request, below.frame, Image(caster_.store(), request, ReadingRule::never()));
@@ -340,27 +433,24 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   const glm::ivec2 size = core::drawn_size(request.view);
   frame.width = size.x;
   frame.height = size.y;
-  const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  const std::size_t pixels = pixels_of(request.view);
   frame.colour.resize(request.want_colour ? pixels : 0);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
   Image image(caster_.store(), request, reading_rule(request, reads_all));
-  if (!request.want_colour) {
-    cast(request, frame.range_m, image);
-  } else if (request.settings.samples > 1) {
+  if (request.want_colour && request.settings.samples > 1) {
     draw_samples(request, frame, image);
+  } else if (fovea_plan(request)) {
+    draw_one(request, frame.range_m, frame.colour, image);
+    if (request.paging.wait) prefetcher_.begin(request);
   } else {
     cast(request, frame.range_m, image);
     result.stats.select_ms = ms_since(start);
-    const bool smooth =
-        request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
-    inverse_depth_.resize(smooth ? pixels : 0);
-    image.nodata_pixels =
-        painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_, &image.reading);
-    if (smooth) core::smooth_edges(frame.colour, inverse_depth_, size.x, size.y, pool_);
+    if (request.want_colour) image.nodata_pixels = paint(request, frame.range_m, frame.colour, image);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
   result.certificate = certify(request, frame, image);
+  if (explained_ != nullptr) *explained_ = explain_tiles(request, planet_->tree(), image.usage);
   result.stats.tiles_by_level = image.usage.tiles_by_level;
   result.stats.tiles_drawn = result.certificate.tiles_drawn;
   if (!request.want_range) range_m_.swap(frame.range_m);

@@ -24,7 +24,9 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <vector>
 
+#include "lod/explain.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 #include "vpe/voxel/ray_request.h"
@@ -41,6 +43,9 @@ struct RayOptions {
   // Beside the budget, an image takes ray_image_bytes() while it is drawn. draw() refuses a larger image than
   // this before it reads a tile: by throwing std::runtime_error with what the image takes.
   std::size_t max_image_bytes = std::numeric_limits<std::size_t>::max();
+  // If set, every draw() replaces its content by an explanation of each tile that the image was cast with
+  // (explain_tiles.h). It must outlive the renderer.
+  std::vector<lod::TileExplanation>* explained = nullptr;
 };
 
 // Returns a renderer of every projection, at any pitch and roll.

@@ -19,11 +19,15 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
   return options;
 }
 
-std::size_t ray_image_bytes(std::int64_t pixels, int samples) {
+std::size_t ray_image_bytes(const core::DrawRequest& request) {
   // Colour, range and inverse depth, and copies while the image is smoothed and written.
   constexpr std::size_t kBytesPerPixel = 16;
   constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
-  return static_cast<std::size_t>(pixels) * (kBytesPerPixel + (samples > 1 ? kBytesPerSum : 0));
+  constexpr std::size_t kBytesOfFovea = 8;  // the outer image has a quarter of the pixels
+  const glm::ivec2 size = core::drawn_size(request.view);
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+         (kBytesPerPixel + (request.settings.samples > 1 ? kBytesPerSum : 0) +
+          (request.settings.ray_fovea ? kBytesOfFovea : 0));
 }
 
 std::string why_not(const core::DrawRequest& request) {
@@ -40,6 +44,13 @@ std::string why_not(const core::DrawRequest& request) {
       !control.empty() && request.settings.ray_mode != core::RayMode::kMultires)
     return "the ray backend draws the finest tiles everywhere: " + std::string(control) +
            " acts with --set rays.mode=multires, or with --backend polygon";
+  if (request.settings.ray_fovea) {
+    if (request.settings.ray_mode != core::RayMode::kMultires)
+      return "rays.fovea thins the rays of rays.mode=multires only: add --set rays.mode=multires, or set "
+             "rays.fovea=off";
+    if (request.view.projection != core::Projection::kPerspective)
+      return "rays.fovea thins perspective images only, as a panorama has no middle: set rays.fovea=off";
+  }
   return {};
 }
 
@@ -53,6 +64,9 @@ std::string_view multires_control(const core::DrawRequest& request) {
   if (values.lod_metric != core::SettingsValues().lod_metric) return "lod.metric=distance";
   if (!request.interest.empty() && values.lod_interest_weight != 0)
     return "level control by regions of interest";
+  if (values.degrade_distance != 1) return "degrade.distance";
+  if (values.degrade_centre != 1) return "degrade.centre";
+  if (values.degrade_interest != 1) return "degrade.interest";
   return {};
 }
 

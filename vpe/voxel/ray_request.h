@@ -11,9 +11,10 @@
 
 namespace vpe::voxel {
 
-// Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed and written.
-// The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in bands.
-std::size_t ray_image_bytes(std::int64_t pixels, int samples);
+// Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed, merged and
+// written. The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in
+// bands.
+std::size_t ray_image_bytes(const core::DrawRequest& request);
 
 // Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
 // markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.

@@ -345,6 +345,64 @@ TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
   EXPECT_NE(spent.dump().find("budget spent"), std::string::npos);
 }
 
+TEST_F(Render, ExplainsTheTilesThatRaysCast) {
+  const std::string pose = "-74,-13.5,300000,20,-40,5";
+  const auto explain = [&](Words more) {
+    more.insert(more.end(),
+                {"--explain-lod", "e.json", "--json", "--backend", "ray", "--set", "rays.mode=multires"});
+    const Result result = render(more, pose);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json out = parse_json(read_text(dir_ / "e.json"));
+    const json drawn = parse_json(result.out);
+    EXPECT_EQ(out["tiles"].size(), drawn["stats"]["tiles_drawn"]);
+    double largest_m = 0;
+    double largest_px = 0;
+    std::vector<int> by_level(drawn["stats"]["tiles_by_level"].size());
+    for (const json& tile : out["tiles"]) {
+      largest_m = std::max(largest_m, tile["error_m"].get<double>());
+      largest_px = std::max(largest_px, tile["error_px"].get<double>());
+      ++by_level.at(tile["lod"].get<std::size_t>());
+      EXPECT_FALSE(tile.contains("mesh"));
+    }
+    EXPECT_EQ(largest_m, drawn["certificate"]["tile_error_m"]);
+    EXPECT_EQ(largest_px, drawn["certificate"]["tile_error_px"]);
+    EXPECT_EQ(by_level, drawn["stats"]["tiles_by_level"].get<std::vector<int>>());
+    return out;
+  };
+  const json plain = explain({"--set", "rays.cell=2"});
+  EXPECT_EQ(plain["rule"], "error");
+  EXPECT_EQ(plain["tolerance_px"], 2);
+  EXPECT_NE(plain.dump().find("within tolerance"), std::string::npos);
+  const json flat = explain(
+      {"--set", "lod.metric=distance", "--set", "lod.distance.scale=0", "--set", "lod.distance.offset=1.9"});
+  EXPECT_EQ(flat["rule"], "distance");
+  for (const json& tile : flat["tiles"]) EXPECT_EQ(tile["reason"], "level reached") << tile.dump();
+  const json thinned = explain({"--set", "rays.fovea=0.3"});
+  EXPECT_EQ(thinned["thinned_tolerance_px"], 2);
+  // Contours are found over finer ground, which is not that of the image.
+  if (vpe::core::overlays_refused().empty())
+    (void)explain({"--set", "rays.cell=8", "--set", "overlay.contours=on"});
+}
+
+TEST_F(Render, WeightsOfABudgetNeedOne) {
+  const std::string pose = "-74,-13.5,60000,20,-60,0";
+  for (const Words& words : {Words{"--backend", "ray", "--set", "rays.mode=multires"}, Words{"--backend", "polygon"}}) {
+    Words all = words;
+    all.insert(all.end(), {"--set", "degrade.centre=0"});
+    const Result result = render(all, pose, "no.png");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(says(result.err, {"degrade", "lod.triangles"})) << result.err;
+    EXPECT_FALSE(exists("no.png"));
+  }
+  const Words capped{"--backend", "polygon", "--set", "lod.triangles=3000", "--tolerance", "0.05"};
+  EXPECT_EQ(render(capped, pose, "even.png").exit_code, 0);
+  Words weighed = capped;
+  weighed.insert(weighed.end(), {"--set", "degrade.centre=0"});
+  const Result result = render(weighed, pose, "centre.png");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(read_text(dir_ / "centre.png"), read_text(dir_ / "even.png"));
+}
+
 TEST_F(Render, TooLittleMemoryForTheToleranceIsTold) {
   write_dem(dir_ / "fine.tif");
   ASSERT_EQ(vpe({"build", "fine.tif", "-o", "fine.vpe", "--base-spacing", "20000", "-q"}).exit_code, 0);

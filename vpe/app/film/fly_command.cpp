@@ -312,6 +312,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   check_parts(arguments, session, request.shard, common.quiet);
   const bool is_named = arguments.image.backend.has_value();
   arguments.image.backend = film.backend;
+  require_budget(base.values(), film.backend);
   const core::DrawRequest first = plan.at(0).request;
   require_known_sun(first.settings, meta.body);
   const auto sun = sun_statement(first.settings, mars::lon_lat(first.view.camera.position_m));

@@ -87,6 +87,7 @@ core::Settings settings_of(const PanoramaArguments& arguments, MapKind kind) {
     return text.starts_with("samples=") || text == "edges=hard";
   });
   if (kind != MapKind::kFacets && !is_named) (void)settings.set("samples", "4");
+  if (settings.values().ray_fovea) throw UsageError("--set rays.fovea: a panorama has no middle; leave it out");
   return settings;
 }
 

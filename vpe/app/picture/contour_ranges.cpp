@@ -23,10 +23,14 @@ std::optional<core::DrawRequest> contour_request(const core::DrawRequest& reques
   settings.lod_triangles = usual.lod_triangles;
   settings.lod_metric = usual.lod_metric;
   settings.lod_centre_weight = usual.lod_centre_weight;
+  settings.degrade_distance = usual.degrade_distance;
+  settings.degrade_centre = usual.degrade_centre;
+  settings.degrade_interest = usual.degrade_interest;
   finer.interest.clear();
   finer.coarsening = 1;
   const bool has_cells = tolerance_px >= core::RayLimits::kLeastCell_px;
   settings.ray_mode = has_cells ? core::RayMode::kMultires : core::RayMode::kExact;
+  settings.ray_fovea = usual.ray_fovea;
   settings.ray_cell_px = std::min(tolerance_px, core::RayLimits::kMostCell_px);
   finer.want_range = true;
   finer.want_colour = false;

@@ -6,6 +6,7 @@
 #include "lod/options.h"
 #include "mars/geodesy/sphere.h"
 #include "vpe/gl/polygon_renderer.h"
+#include "vpe/voxel/foveated_image.h"
 
 namespace vpe::app {
 
@@ -21,8 +22,6 @@ nlohmann::json tile_json(const lod::TileExplanation& e, bool by_distance) {
   nlohmann::json object{{"tile", lod::to_string(e.key)},
                         {"lod", e.key.level},
                         {"post_spacing_m", e.post_spacing_m},
-                        {"mesh", e.variant + 1},
-                        {"meshes", e.variants},
                         {"min_distance_m", e.min_distance_m},
                         {"angle_from_centre_deg", e.terms.centre_angle_rad / mars::kRadiansPerDegree},
                         {"error_m", e.geometric_error_m},
@@ -53,7 +52,9 @@ nlohmann::json explain_lod(const core::DrawRequest& request, const paging::Plane
   const bool by_distance = options.control.metric == core::LodMetric::kDistance;
   nlohmann::json tiles = nlohmann::json::array();
   for (const lod::TileExplanation& e : lod::explain(options, planet.tree(), view, selection)) {
-    tiles.push_back(tile_json(e, by_distance));
+    nlohmann::json& tile = tiles.emplace_back(tile_json(e, by_distance));
+    tile["mesh"] = e.variant + 1;
+    tile["meshes"] = e.variants;
   }
   nlohmann::json object{{"rule", by_distance ? "distance" : "error"},
                         {"max_triangles", options.max_triangles},
@@ -61,6 +62,17 @@ nlohmann::json explain_lod(const core::DrawRequest& request, const paging::Plane
                         {"budget_spent", selection.capped},
                         {"tiles", tiles}};
   if (!by_distance) object["tolerance_px"] = options.tolerance_px;
+  return object;
+}
+
+nlohmann::json explain_lod(const core::DrawRequest& request, std::span<const lod::TileExplanation> cast) {
+  const bool by_distance = request.settings.lod_metric == core::LodMetric::kDistance;
+  nlohmann::json tiles = nlohmann::json::array();
+  for (const lod::TileExplanation& e : cast) tiles.push_back(tile_json(e, by_distance));
+  nlohmann::json object{{"rule", by_distance ? "distance" : "error"}, {"tiles", tiles}};
+  if (by_distance) return object;
+  object["tolerance_px"] = request.settings.ray_cell_px;
+  if (request.settings.ray_fovea) object["thinned_tolerance_px"] = voxel::kThinned * request.settings.ray_cell_px;
   return object;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 
+#include "lod/explain.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 
@@ -13,5 +15,8 @@ namespace vpe::app {
 // one. Numbers that are not finite are null.
 nlohmann::json explain_lod(const core::DrawRequest& request, const paging::PlanetFile& planet,
                            std::size_t memory_bytes);
+
+// Returns the same for an image by rays, of the tiles that it was cast with (RayOptions::explained).
+nlohmann::json explain_lod(const core::DrawRequest& request, std::span<const lod::TileExplanation> cast);
 
 }  // namespace vpe::app

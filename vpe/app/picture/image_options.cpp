@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "lod/options.h"
 #include "mars/geodesy/mars_time.h"
 #include "mars/geodesy/sun.h"
 #include "vpe/app/cli/parsing.h"
@@ -119,7 +120,8 @@ core::Settings make_settings(const RenderOptions& options) {
 }
 
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
-                                              std::shared_ptr<const paging::PlanetFile> planet) {
+                                              std::shared_ptr<const paging::PlanetFile> planet,
+                                              std::vector<lod::TileExplanation>* explained) {
   // A compact heap costs a fifth of a film's time in page faults, so it is used only where memory is short.
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
@@ -128,11 +130,19 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
     return voxel::make_ray_renderer(std::move(planet),
                                     {.memory_bytes = memory_bytes(common),
                                      .threads = common.threads,
-                                     .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes)});
+                                     .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes),
+                                     .explained = explained});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;
   return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
+}
+
+void require_budget(const core::SettingsValues& settings, core::Backend backend) {
+  if (lod::is_even(lod::degrade_weights(settings))) return;
+  if (backend == core::Backend::kPolygon && settings.lod_triangles > 0) return;
+  throw UsageError("degrade.* weighs what a budget takes, and this image has none: add --set lod.triangles=N with --backend "
+                   "polygon, or leave it out (lod.frame_ms is the budget of windows)");
 }
 
 void require_complete(const RenderOptions& options, const core::DrawResult& result) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lod/explain.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/core/backend.h"
@@ -56,9 +57,14 @@ void make_interest_planetocentric(std::vector<std::string>& interest, const std:
 std::size_t memory_bytes(const Common& common);
 
 // Makes the renderer of the options' backend. Throws std::logic_error when that is auto, and what the backends
-// throw.
+// throw. Rays explain their tiles to `explained` (RayOptions::explained).
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
-                                              std::shared_ptr<const paging::PlanetFile> planet);
+                                              std::shared_ptr<const paging::PlanetFile> planet,
+                                              std::vector<lod::TileExplanation>* explained = nullptr);
+
+// Throws UsageError if the settings weigh what a budget takes (degrade.*) and images that are drawn in full have none:
+// rays, and triangles without lod.triangles. Frames of windows have a budget of time.
+void require_budget(const core::SettingsValues& settings, core::Backend backend);
 
 // Throws std::runtime_error that names the missing tiles of an image, unless the options allow them. Unreadable
 // tiles come first: tiles below them are missing for the same reason.

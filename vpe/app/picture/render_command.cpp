@@ -37,12 +37,15 @@ namespace vpe::app {
 
 namespace {
 
-// Sets the backend of the options and the settings of the request. --explain-lod describes triangles.
+// Sets the backend of the options and the settings of the request. --explain-lod alone describes triangles.
 void resolve_backend(RenderArguments& arguments, core::Settings& settings, core::DrawRequest& request,
                      double radius_m) {
   RenderOptions& image = arguments.image;
-  if (image.backend == core::Backend::kRay && !arguments.explain_lod.empty())
-    throw UsageError("--explain-lod explains triangles, and --backend ray draws none; leave one of them out");
+  if (image.backend == core::Backend::kRay && !arguments.explain_lod.empty() &&
+      settings.values().ray_mode != core::RayMode::kMultires)
+    throw UsageError(
+        "--explain-lod: --backend ray draws the finest tiles everywhere; add --set rays.mode=multires, or take "
+        "--backend polygon");
   if (!image.backend && !arguments.explain_lod.empty()) image.backend = core::Backend::kPolygon;
   const BackendChoice chosen = choose_backend(image, settings, {&request, 1}, radius_m, gl::has_gpu());
   image.backend = chosen.backend;
@@ -132,9 +135,17 @@ void write_stereo(const RenderArguments& arguments, const Common& common, const 
   }
 }
 
+// What --explain-lod says: of the tiles that rays have cast, or of those that triangles have drawn.
+nlohmann::json explanation(const RenderArguments& arguments, const Common& common,
+                           const core::DrawRequest& request, const paging::PlanetFile& planet,
+                           std::span<const lod::TileExplanation> cast) {
+  return arguments.image.backend == core::Backend::kRay ? explain_lod(request, cast)
+                                                        : explain_lod(request, planet, memory_bytes(common));
+}
+
 void write_image_files(const RenderArguments& arguments, const Common& common, const core::DrawRequest& request,
                        const core::DrawResult& result, const RenderRecipe& recipe,
-                       const paging::PlanetFile& planet) {
+                       const paging::PlanetFile& planet, std::span<const lod::TileExplanation> cast) {
   const core::Frame& frame = result.frame;
   const nlohmann::ordered_json certificate = core::to_json(result.certificate);
   core::ImageOptions options;
@@ -147,7 +158,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
   if (!arguments.certificate.empty())
     base::write_file(arguments.certificate, core::json_text(certificate, 2) + "\n\n");
   if (!arguments.explain_lod.empty()) {
-    const nlohmann::json levels = explain_lod(request, planet, memory_bytes(common));
+    const nlohmann::json levels = explanation(arguments, common, request, planet, cast);
     base::write_file(arguments.explain_lod, core::json_text(levels, 2) + "\n");
   }
   if (common.json) {
@@ -168,9 +179,10 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
 std::unique_ptr<core::Renderer> renderer_for(RenderArguments& arguments, const Common& common,
                                              const std::shared_ptr<const paging::PlanetFile>& planet,
                                              core::Settings& settings, core::DrawRequest& request,
-                                             bool is_backend_named) {
+                                             bool is_backend_named,
+                                             std::vector<lod::TileExplanation>* explained) {
   try {
-    return make_renderer(arguments.image, common, planet);
+    return make_renderer(arguments.image, common, planet, explained);
   } catch (const gl::ContextError& e) {
     const auto rays = rays_instead(arguments.image, settings, {&request, 1});
     if (is_backend_named || !rays) throw;
@@ -240,13 +252,18 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!common.quiet) print_sun(sun_statement(request.settings, place_below(request)));
   const bool is_backend_named = arguments.image.backend.has_value() || !arguments.explain_lod.empty();
   resolve_backend(arguments, settings, request, planet->radius_m());
+  require_budget(settings.values(), *arguments.image.backend);
   require_above_ground(arguments, planet, request);
-  const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named);
+  std::vector<lod::TileExplanation> explained;  // of what rays drew last
+  std::vector<lod::TileExplanation> cast;       // of the image
+  const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named,
+                                     arguments.explain_lod.empty() ? nullptr : &explained);
   RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
   recipe.palette = take_palette_of_view(request, planet, common);
   // Makes the finished image of one camera.
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
+    cast = explained;
     require_complete(arguments.image, result);
     if (!common.quiet) {
       print_failures(result.failures);
@@ -268,7 +285,7 @@ void render(RenderArguments& arguments, const Common& common) {
     return result;
   };
   if (arguments.stereo.layout.empty()) {
-    write_image_files(arguments, common, request, draw(request), recipe, *planet);
+    write_image_files(arguments, common, request, draw(request), recipe, *planet, cast);
   } else {
     write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw), recipe, planet->meta());
   }

@@ -135,6 +135,14 @@ const KeyRegistry<SettingsValues>& registry() {
       {"lod.frame_ms", Declare::number<&V::lod_frame_ms>(0, 10000), "ms",
        "time that a frame should take while the camera moves, held by drawing coarser; 0 = none; single images "
        "and films are always drawn in full"},
+      {"degrade.distance", Declare::number<&V::degrade_distance>(0, 100), "",
+       "factor on the levels that a budget (lod.triangles, lod.frame_ms) takes away from the image centre and from "
+       "regions of interest; 0 = none"},
+      {"degrade.centre", Declare::number<&V::degrade_centre>(0, 100), "",
+       "factor on the levels that a budget takes at the image centre; fades into degrade.distance up to half an "
+       "image height from it"},
+      {"degrade.interest", Declare::number<&V::degrade_interest>(0, 100), "",
+       "factor on the levels that a budget takes in regions of interest with more levels"},
       {"cull.occlusion",
        Declare::choice<&V::occlusion>(
            {word("auto", Occlusion::kAuto), word("off", Occlusion::kOff), word("on", Occlusion::kOn)}),
@@ -150,6 +158,10 @@ const KeyRegistry<SettingsValues>& registry() {
       {"rays.cell", Declare::number<&V::ray_cell_px>(RayLimits::kLeastCell_px, RayLimits::kMostCell_px), "px",
        "backend ray, mode multires: largest distance in the image between a cell and the surface; larger: "
        "faster"},
+      {"rays.fovea",
+       Declare::number_or_word<&V::ray_fovea>(RayLimits::kLeastFovea, RayLimits::kMostFovea, "off"), "",
+       "backend ray, mode multires, perspective: share of the image's sides, about its middle, that has a ray for "
+       "each pixel; the rest has half as many columns and rows; off: all of the image"},
       {"samples", Declare::choice<&V::samples>({word("1", 1), word("2", 2), word("4", 4)}), "",
        "colour samples in each pixel (anti-aliasing), backend ray: rays in each pixel; without a GPU, more "
        "than one more than doubles the time"},

@@ -37,10 +37,12 @@ enum class RayMode {
 
 enum class Occlusion { kAuto, kOff, kOn };
 
-// Limits of rays.cell.
+// Limits of rays.cell and rays.fovea.
 struct RayLimits {
   static constexpr double kLeastCell_px = 1.0 / 64;
   static constexpr double kMostCell_px = 64;
+  static constexpr double kLeastFovea = 0.05;
+  static constexpr double kMostFovea = 0.95;
 };
 
 // The values of all settings. The keys of the inherited members are in settings.cpp too.
@@ -63,12 +65,20 @@ struct SettingsValues : Appearance, Overlays {
   double lod_centre_weight = 0;
   LevelTable lod_centre_table;
   double lod_interest_weight = 1;  // factor on the levels of regions of interest
+  // What a budget takes, by where tiles are: 1: all lose alike; larger: they lose more levels; 0: none. Away from the
+  // image centre and from regions of interest, at the centre, in such regions (lod/control.h).
+  double degrade_distance = 1;
+  double degrade_centre = 1;
+  double degrade_interest = 1;
   // Time of a frame while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
   double lod_frame_ms = 0;
   Occlusion occlusion = Occlusion::kAuto;
   RayMode ray_mode = RayMode::kExact;
   // RayMode::kMultires: largest distance between a cell and the surface, in the image. Smaller: finer, slower.
   double ray_cell_px = 1;
+  // RayMode::kMultires, perspective: the share of each side of the image, about its middle, that has a ray for each
+  // pixel; the rest has half as many columns and rows. Smaller: faster, less is sharp. nullopt: all of the image.
+  std::optional<double> ray_fovea;
   int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
   bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel
 

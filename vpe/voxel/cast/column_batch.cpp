@@ -53,6 +53,7 @@ void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, 
       for (int lane = 0; lane < kMaxLanes; ++lane) {
         group.row[lane] = 0;
         group.row_end[lane] = 0;
+        group.row_stop[lane] = static_cast<float>(batch.rows.count);
         group.run_start[lane] = 1;
         group.run_gain[lane] = 0;
         group.run_slope[lane] = 0;

@@ -25,8 +25,8 @@ struct ColumnBatch {
   std::ptrdiff_t stride = 0;  // floats from a row to the next
   bool stream = false;        // writes past the caches (copy_rows())
   // Sets the azimuth of a column (unit, body-fixed), its rows [row, row_end) and, for RowKind::kSector, its
-  // slope coefficients. Only these rows are written, and the same rows of the columns of its task. Any thread
-  // calls it.
+  // slope coefficients; and row_stop, which is otherwise the number of rows. Only these rows are written, and the
+  // same rows of the columns of its task. Any thread calls it.
   std::function<void(int column, ColumnGroup& group, int lane, glm::dvec3& azimuth)> set_column;
 };
 

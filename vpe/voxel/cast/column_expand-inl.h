@@ -31,7 +31,7 @@ void least_as(const Rows& rows, ColumnGroup& group) {
   const RowTag d;
   const RowModel<RowTag, kKind> model(rows, group, 0);
   const auto row = hn::Load(d, group.row);
-  const auto alive = hn::Lt(row, hn::Load(d, group.row_end));
+  const auto alive = hn::Lt(row, hn::Min(hn::Load(d, group.row_end), hn::Load(d, group.row_stop)));
   const auto far = hn::Set(d, std::numeric_limits<float>::infinity());
   group.least_slope =
       static_cast<double>(hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive, model.slope(row), far))));

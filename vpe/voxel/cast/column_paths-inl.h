@@ -96,7 +96,7 @@ void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const Colu
     } else if (!(s0 > 0)) {
       to = from;
     }
-    const bool inside = from < to && group.row[lane] < group.row_end[lane];
+    const bool inside = from < to && group.row[lane] < std::min(group.row_end[lane], group.row_stop[lane]);
     out.position0[lane] = diagonal ? x0 : (columns ? y0 : x0);
     out.position1[lane] = m;
     out.sigma0[lane] = s0 * scale;

@@ -13,6 +13,7 @@
 #include "lod/tree/tree.h"
 #include "paging/surface/surface.h"
 #include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/cast/tile_usage.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 
 namespace vpe::voxel {
@@ -62,19 +63,7 @@ class ColumnWalk {
   // Returns the radius of the highest ground, as exaggerated.
   double highest_m() const { return highest_m_; }
 
-  // Describes the tiles that casts have used.
-  struct Usage {
-    std::vector<int> tiles_by_level;  // index 0 = level 0
-    // Bound of the distance between what is cast and the reference surface, in the image; 0 if all tiles were
-    // the finest.
-    double screen_space_error_px = 0;
-    double geometric_error_m = 0;  // largest of the tiles
-    double steepest_slope = 0;     // bound of the tangent of the slope of the reference surface in the tiles
-    int tiles_replaced = 0;        // cast with the posts of an ancestor
-    // Merges the usage of another image of nearly the same view: takes the larger of both counts of each level,
-    // and of both errors.
-    void add(const Usage& other);
-  };
+  using Usage = TileUsage;
   // Returns the usage of all casts so far.
   Usage usage() const;
 

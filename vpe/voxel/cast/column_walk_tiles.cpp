@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <unordered_set>
 
 #include "mars/geodesy/cube.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
@@ -105,6 +104,7 @@ double ColumnWalk::in_image_px(double geometric_error_m, lod::TileTree::Index ti
 bool ColumnWalk::is_fine(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   double factor = 1;
+  double cell_px = rule_.cell_px;
   if (rule_.control != nullptr) {
     const cull::BoundingRegion region = tree_.region(tile, exaggeration_, posts_error_m(tile));
     const lod::ControlTerms terms = lod::control_terms(
@@ -112,10 +112,11 @@ bool ColumnWalk::is_fine(lod::TileTree::Index tile) const {
     if (rule_.control->metric == core::LodMetric::kDistance)
       return lod::level_count(info.key) >= lod::wanted_level_count(terms.sum);
     factor = std::exp2(lod::level_shift(terms.sum));
+    cell_px *= lod::degrade_factor(*rule_.control, terms.degrade_weight);
   }
-  if (info.posts_terms.known()) return factor * in_image_px(measured_error_m(tile), tile) <= rule_.cell_px;
+  if (info.posts_terms.known()) return factor * in_image_px(measured_error_m(tile), tile) <= cell_px;
   const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
-  return factor * spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
+  return factor * spacing * rule_.focal_px <= cell_px * least_distance_m(tile);
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
@@ -186,34 +187,19 @@ void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
     ends_[tile].fetch_or(kUsed, std::memory_order_relaxed);
 }
 
-ColumnWalk::Usage ColumnWalk::usage() const {
-  Usage usage;
-  std::unordered_set<lod::TileTree::Index> sources;
+TileUsage ColumnWalk::usage() const {
+  TileUsage usage;
   for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
     if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
     const lod::TileTree::Index source = fallbacks_ != nullptr ? fallbacks_->source_of(tile) : tile;
-    const lod::TileInfo& info = tree_[source];
-    const auto level = static_cast<std::size_t>(info.key.level);
-    if (usage.tiles_by_level.size() <= level) usage.tiles_by_level.resize(level + 1);
-    if (source == tile || sources.insert(source).second) ++usage.tiles_by_level[level];
-    if (source != tile) ++usage.tiles_replaced;
-    usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(info, exaggeration_));
-    const double geometric_error_m = source == tile ? posts_error_m(tile) : fallback_error_m(tile, source);
-    if (geometric_error_m == 0) continue;
-    usage.geometric_error_m = std::max(usage.geometric_error_m, geometric_error_m);
-    usage.screen_space_error_px = std::max(usage.screen_space_error_px, in_image_px(geometric_error_m, tile));
+    TileUse use{tile, source, least_distance_m(tile)};
+    use.geometric_error_m = source == tile ? posts_error_m(tile) : fallback_error_m(tile, source);
+    if (use.geometric_error_m != 0) use.screen_space_error_px = in_image_px(use.geometric_error_m, tile);
+    usage.tiles.push_back(use);
+    usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(tree_[source], exaggeration_));
   }
+  update_totals(tree_, usage);
   return usage;
-}
-
-void ColumnWalk::Usage::add(const Usage& other) {
-  tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
-  for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
-    tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
-  screen_space_error_px = std::max(screen_space_error_px, other.screen_space_error_px);
-  geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
-  steepest_slope = std::max(steepest_slope, other.steepest_slope);
-  tiles_replaced = std::max(tiles_replaced, other.tiles_replaced);
 }
 
 }  // namespace vpe::voxel

@@ -72,13 +72,15 @@ struct ColumnGroup {
   alignas(64) double sector_b1[kMaxLanes];
   alignas(64) float row[kMaxLanes];      // whole numbers
   alignas(64) float row_end[kMaxLanes];  // whole numbers; 0 for lanes beyond `columns`
+  // Rows from here on need not be resolved, and may be or not; does not change the rows before.
+  alignas(64) float row_stop[kMaxLanes];
   // The run that expand_rows() has reached.
   alignas(64) float run_start[kMaxLanes];
   alignas(64) float run_gain[kMaxLanes];
   alignas(64) float run_slope[kMaxLanes];
   float* start = nullptr;  // rows * kMaxLanes, at a multiple of 64 bytes
   float* gain = nullptr;   // rows * kMaxLanes, at a multiple of 64 bytes
-  double least_slope = 0;  // of all unresolved rows; infinite when there are none
+  double least_slope = 0;  // of all unresolved rows before row_stop; infinite when there are none
   int columns = 0;
 };
 
@@ -102,7 +104,7 @@ inline constexpr int kExactLines = 24;
 // Returns true if the camera is so low that the cells below it need double.
 bool needs_exact(const HeightGridFrame& frame, const ColumnCamera& camera);
 
-// Sets group.least_slope from the unresolved rows.
+// Sets group.least_slope from the unresolved rows before row_stop.
 void update_least_slope(const Rows& rows, ColumnGroup& group);
 
 // Writes the ranges of rows [first, last) for all columns to out[(row - first) * stride + lane], and clears

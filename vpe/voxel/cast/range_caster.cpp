@@ -132,7 +132,8 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
       } else if (round) {
         cast_upright(view, *walk, scratches, pool, range_m);
       } else {
-        sectors.cast(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool, range_m);
+        sectors.cast(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool, range_m,
+                     options.only);
       }
       return walk->usage();
     }

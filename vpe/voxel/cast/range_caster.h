@@ -40,6 +40,9 @@ struct RangeOptions {
   // (docs/measurements/rays.md).
   Method method = Method::kColumns;
   lod::LevelControl control = {};  // acts unless cell_px is 0
+  // The pixels of the full image whose ranges are wanted; width 0: all of the drawn part. In perspective by columns
+  // the others cost nothing and are not written, but for some beside it (SectorCaster); elsewhere all are cast.
+  core::SubRectangle only = {};
   bool operator==(const RangeOptions&) const = default;
 };
 

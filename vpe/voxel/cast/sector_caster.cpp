@@ -31,6 +31,20 @@ struct RowHints {
   std::vector<int> unresolved;
 };
 
+// Returns what lies in `part` of a rectangle, widened to whole blocks of columns: a block's rays are computed from
+// its first one.
+core::SubRectangle in_whole_blocks(const core::SubRectangle& only, const core::SubRectangle& part) {
+  const auto block = [&](int x) { return (x - part.x) / kTaskColumns * kTaskColumns + part.x; };
+  const int x0 = std::max(only.x, part.x);
+  const int x1 = std::min(only.x + only.width, part.x + part.width);
+  const int y0 = std::max(only.y, part.y);
+  const int y1 = std::min(only.y + only.height, part.y + part.height);
+  if (x0 >= x1 || y0 >= y1) return {};
+  const int begin = block(x0);
+  const int end = std::min(block(x1 - 1) + kTaskColumns, part.x + part.width);
+  return {begin, y0, end - begin, y1 - y0};
+}
+
 // Casts about the nearer hint, over the walk's height grids in fixed steps, and from the camera if the hint lies
 // too far.
 double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& camera, const glm::dvec3& ray,
@@ -49,22 +63,28 @@ std::size_t SectorCaster::bytes() const {
   return total;
 }
 
-void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches,
-                                base::ThreadPool& pool) {
+void SectorCaster::cast_sectors(const SectorPlan& plan, const core::SubRectangle& pixels,
+                                const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool) {
   std::vector<ColumnBatch> batches;
   samples_.resize(std::max(samples_.size(), plan.sectors().size()));
   for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
     const ViewSector& sector = plan.sectors()[f];
     samples_[f].resize(static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines));
+    const SectorPlan::Window window = SectorPlan::window(sector, pixels);
+    if (window.is_empty()) continue;
+    // Rows before the window are resolved too: where a run of rows begins decides how its ranges are rounded.
+    const int stop = sector.rising ? window.end_step : sector.steps - window.first_step;
     ColumnBatch& batch = batches.emplace_back();
     batch.rows.kind = RowKind::kSector;
     batch.rows.count = sector.steps;
-    batch.columns = sector.lines;
+    batch.columns = window.end_line - window.first_line;
     // Samples are stored by step.
     batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
-    batch.out = samples_[f].data() + (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
-    batch.set_column = [&plan, &sector](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
-      const SectorLine line = plan.line(sector, column);
+    batch.out = samples_[f].data() + window.first_line +
+                (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
+    batch.set_column = [&plan, &sector, first = window.first_line, stop](
+                           int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+      const SectorLine line = plan.line(sector, first + column);
       azimuth = line.azimuth;
       group.sector_a0[lane] = line.a0;
       group.sector_a1[lane] = line.a1;
@@ -72,6 +92,7 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, 
       group.sector_b1[lane] = line.b1;
       group.row[lane] = static_cast<float>(line.row_begin);
       group.row_end[lane] = static_cast<float>(line.row_end);
+      group.row_stop[lane] = static_cast<float>(stop);
     };
   }
   cast_columns(batches, walk, scratches, pool);
@@ -136,24 +157,30 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
 }
 
 void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-                        const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m) {
-  const SectorPlan plan(view, walk.camera().up, kSpacing_px);
-  cast_sectors(plan, walk, scratches, pool);
+                        const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
+                        const core::SubRectangle& only) {
   const core::SubRectangle part = core::drawn_part(view);
+  const core::SubRectangle pixels = only.width > 0 ? in_whole_blocks(only, part) : part;
+  if (pixels.width <= 0 || pixels.height <= 0) return;
+  const SectorPlan plan(view, walk.camera().up, kSpacing_px);
+  cast_sectors(plan, pixels, walk, scratches, pool);
   const mars::Axes& axes = view.camera.axes;
   const double focal = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x;
   const double cy = 0.5 * view.height + view.principal_offset_px.y;
-  const int tasks = (part.height + kTaskRows - 1) / kTaskRows;
+  const int first_row = pixels.y - part.y;
+  const int end_row = first_row + pixels.height;
+  const int first_column = pixels.x - part.x;
+  const int tasks = (pixels.height + kTaskRows - 1) / kTaskRows;
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
     const ScratchPool::Lease scratch = scratches.acquire();
     FacetFinder finder(walk, scratch->tiles);
     FacetFinder exact_finder(walk, scratch->tiles);
     RowHints hints(part.width);
-    const int first = static_cast<int>(task) * kTaskRows;
-    const int last = std::min(first + kTaskRows, part.height);
+    const int first = first_row + static_cast<int>(task) * kTaskRows;
+    const int last = std::min(first + kTaskRows, end_row);
     // In blocks, so that neighbouring rows find their samples and height grids in the caches.
-    for (int begin = 0; begin < part.width; begin += kTaskColumns) {
+    for (int begin = first_column; begin < first_column + pixels.width; begin += kTaskColumns) {
       const int end = std::min(begin + kTaskColumns, part.width);
       for (int row = first; row < last; ++row) {
         find_hints(plan, part, row, begin, end, hints.a.data(), hints.b.data(), hints.share.data());

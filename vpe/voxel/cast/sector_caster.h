@@ -24,15 +24,20 @@ class SectorCaster {
   // surfaces (ridges, the skyline) the ray is cast by itself: against the reference surface by `single_rays`; if
   // that is null, or lacks a tile, in fixed steps over the height grids of `walk`. Throws paging::PlanetError for
   // tiles that cannot be read.
+  //
+  // With `only`, a rectangle of the full image, it casts the samples and rays of that rectangle alone (its width 0:
+  // all of the drawn part). Its ranges are the same to the bit; those beside it are left alone, except that it is
+  // widened to whole blocks of columns.
   void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-            const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m);
+            const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
+            const core::SubRectangle& only = {});
 
   // Returns the bytes of the samples that are kept.
   std::size_t bytes() const;
 
  private:
-  void cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches,
-                    base::ThreadPool& pool);
+  void cast_sectors(const SectorPlan& plan, const core::SubRectangle& pixels, const ColumnWalk& walk,
+                    ScratchPool& scratches, base::ThreadPool& pool);
   // Finds the samples on either side of pixels [first_pixel, last_pixel) of a row of the drawn part.
   void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                   int last_pixel, float* a, float* b, float* share) const;

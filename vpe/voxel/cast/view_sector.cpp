@@ -139,6 +139,33 @@ void SectorPlan::add(bool upright, bool forward) {
   if (end < begin) made.rising = false;
 }
 
+SectorPlan::Window SectorPlan::window(const ViewSector& sector, const core::SubRectangle& pixels) {
+  // Pixels beside a sector's steps take the nearest step, and positions among the lines are rounded to float.
+  constexpr int kMargin = 2;
+  const int t0 = sector.upright ? pixels.y : pixels.x;
+  const int t_count = sector.upright ? pixels.height : pixels.width;
+  const double s0 = (sector.upright ? pixels.x : pixels.y) + 0.5;
+  const double s1 = s0 + (sector.upright ? pixels.width : pixels.height) - 1.0;
+  Window window;
+  window.first_step = std::clamp(t0 - kMargin - sector.first_step, 0, sector.steps);
+  window.end_step = std::clamp(t0 + t_count + kMargin - sector.first_step, 0, sector.steps);
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (int k = window.first_step; k < window.end_step; ++k) {
+    const ViewSector::Map& map = sector.maps[static_cast<std::size_t>(k)];
+    for (const double s : {s0, s1}) {
+      const double line = (map.scale * s + map.shift - sector.first_line) / sector.spacing;
+      low = std::min(low, line);
+      high = std::max(high, line);
+    }
+  }
+  if (!(low <= high)) return window;
+  const double last = sector.lines;
+  window.first_line = static_cast<int>(std::clamp(std::floor(low) - kMargin, 0.0, last));
+  window.end_line = static_cast<int>(std::clamp(std::ceil(high) + kMargin + 1, 0.0, last));
+  return window;
+}
+
 SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
   const mars::Axes& axes = view_.camera.axes;
   const double s_ref = sector.first_line + sector.spacing * index;

@@ -66,6 +66,17 @@ class SectorPlan {
   // Returns the column of line `index`, 0 <= index < sector.lines.
   SectorLine line(const ViewSector& sector, int index) const;
 
+  // The lines and steps of a sector that hold the samples of some pixels.
+  struct Window {
+    int first_line = 0;
+    int end_line = 0;
+    int first_step = 0;
+    int end_step = 0;
+    bool is_empty() const { return first_line >= end_line || first_step >= end_step; }
+  };
+  // Returns lines and steps that hold all samples beside the pixels of a rectangle of the full image.
+  static Window window(const ViewSector& sector, const core::SubRectangle& pixels);
+
   // Names a sector by its direction from V.
   struct Side {
     bool upright;
