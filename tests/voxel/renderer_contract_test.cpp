@@ -209,41 +209,46 @@ TEST_P(RendererContract, LevelControlActsOrIsRefused) {
 
 // Weights of what a budget takes change which tiles become coarser, and nothing while no budget takes any.
 TEST_P(RendererContract, WeightsOfABudgetMoveItsLosses) {
-  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 20000);
+  const mars::LonLat place{20, 30};
+  const auto planet = build_fake(
+      dir_ / "p.vpe", FakeElevation(bumpy_height, test_support::fine_around(mars::direction(place), 0.2, 3000)),
+      100000);
   const paging::Surface surface(planet, std::size_t{1} << 26);
   const auto draw = make(planet);
-  core::DrawRequest even = request_for({20, 30, 400000, 40, -60, 0}, planet->radius_m(), 64, 48);
-  even.settings.lod_tolerance_px = even.settings.ray_cell_px = 0.1;
+  core::DrawRequest even =
+      request_for({place.lon_deg, place.lat_deg, 600000, 40, -90, 0}, planet->radius_m(), 64, 48, 90);
+  even.settings.lod_tolerance_px = 1.0 / 16;
+  even.settings.ray_cell_px = 1.0 / 64;
   even.settings.ray_mode = core::RayMode::kMultires;
-  core::DrawRequest coarse = even;
-  coarse.coarsening = 16;
-  const core::DrawResult full = draw->draw(even);
-  const core::DrawResult lossy = draw->draw(coarse);
-  std::vector<core::SettingsValues> weights(3, even.settings);
-  weights[0].degrade_distance = 0;
-  weights[1].degrade_centre = 0;
-  weights[2].degrade_interest = 0;
-  for (std::size_t n = 0; n < weights.size(); ++n) {
-    SCOPED_TRACE(n);
-    core::DrawRequest weighed = coarse;
-    core::DrawRequest reference = coarse;
-    weighed.settings = weights[n];
-    if (n == 2) weighed.interest = reference.interest = {{20, 30, 200000, 1}};
-    const core::DrawResult result = draw->draw(weighed);
-    EXPECT_GT(result.stats.tiles_drawn, draw->draw(reference).stats.tiles_drawn);
-    EXPECT_LT(result.stats.tiles_drawn, full.stats.tiles_drawn * (n == 2 ? 2 : 1));
-    EXPECT_LE(shift_over_bound(result, surface, weighed), 1);
-    weighed.coarsening = reference.coarsening = 1;
+  const auto tiles = [&](core::DrawRequest request, double coarsening) {
+    request.coarsening = coarsening;
+    const core::DrawResult result = draw->draw(request);
+    EXPECT_LE(shift_over_bound(result, surface, request), 1);
+    return result.stats.tiles_drawn;
+  };
+  const auto expect_between = [&](const core::DrawRequest& weighed, const core::DrawRequest& unweighed) {
+    EXPECT_GT(tiles(weighed, 16), tiles(unweighed, 16));
+    EXPECT_LT(tiles(weighed, 16), tiles(unweighed, 1));
     const core::DrawResult at_rest = draw->draw(weighed);
-    const core::DrawResult expected = draw->draw(reference);
+    const core::DrawResult expected = draw->draw(unweighed);
     EXPECT_EQ(at_rest.frame.colour, expected.frame.colour);
     EXPECT_EQ(at_rest.frame.range_m, expected.frame.range_m);
     core::DrawRequest exact = weighed;
     exact.interest.clear();
     exact.settings.ray_mode = core::RayMode::kExact;
     EXPECT_NE(vpe::voxel::why_not(exact).find("degrade."), std::string::npos);
-  }
-  EXPECT_LT(lossy.stats.tiles_drawn, full.stats.tiles_drawn);
+  };
+  core::DrawRequest rim = even;
+  rim.settings.degrade_distance = 0;
+  expect_between(rim, even);
+  core::DrawRequest centre = even;
+  centre.settings.degrade_centre = 0;
+  expect_between(centre, even);
+  core::DrawRequest region = even;
+  region.interest = {{place.lon_deg + 4, place.lat_deg, 100000, 1}};
+  core::DrawRequest kept = region;
+  kept.settings.degrade_interest = 0;
+  expect_between(kept, region);
 }
 
 // A wall close before a camera that is high above the foot of the wall.

@@ -93,7 +93,7 @@ class RayRenderer : public core::Renderer {
     std::vector<AbsentPage> absent_colours;  // of all that was painted
     ColumnWalk::Usage usage;
     std::int64_t nodata_pixels = 0;
-    std::optional<double> middle_px;  // screen-space error of the middle of a foveated image
+    std::optional<TileUsage> middle;  // of a foveated image
     bool is_thinned = false;
   };
 
@@ -169,8 +169,9 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   const ColumnWalk::Usage& usage = image.usage;
   core::Certificate c;
   // A range that is off by d / sin(incidence) puts the point d beside its facet, so d / cos(slope) above it.
-  c.quantisation_px = caster_.range_error(request.view, request.settings.exaggeration) *
-                      core::focal_px(request.view) * std::hypot(1.0, usage.steepest_slope);
+  const double range_error_px =
+      caster_.range_error(request.view, request.settings.exaggeration) * core::focal_px(request.view);
+  c.quantisation_px = range_error_px * std::hypot(1.0, usage.steepest_slope);
   c.geometric_error_m = usage.geometric_error_m;
   c.screen_space_error_px = usage.screen_space_error_px;
   c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
@@ -178,7 +179,9 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
     // Of the whole planet: what lies beside a ray may be ground that no ray has met.
     c.thinning_px = thinning_px(planet_->tree().steepest_slope(request.settings.exaggeration));
     c.shift_bound_px += c.thinning_px;
-    if (image.middle_px) c.middle_bound_px = *image.middle_px + c.quantisation_px;
+    if (image.middle)
+      c.middle_bound_px =
+          image.middle->screen_space_error_px + range_error_px * std::hypot(1.0, image.middle->steepest_slope);
   }
   for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
@@ -238,7 +241,8 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
   if (plan.dense.width > 0) {
     options.only = plan.dense;
     usage = cast_in_bands(request.view, options, range_m, image.fallbacks);
-    image.middle_px = std::max(image.middle_px.value_or(0), usage.screen_space_error_px);
+    if (!image.middle) image.middle.emplace();
+    image.middle->add(usage, planet_->tree());
     image.usage.add(usage, planet_->tree());
   }
   spread_ranges(plan, request.view, outer_m, pool_, range_m);
