@@ -148,8 +148,8 @@ double degrade_factor(const LevelControl& control, double degrade_weight) {
 }
 
 bool is_neutral(const LevelControl& control) {
-  return control.metric == core::LodMetric::kError && control.centre.weight == 0.0 && is_even(control.degrade) &&
-         (control.regions.empty() || control.interest_weight == 0.0);
+  return control.metric == core::LodMetric::kError && control.centre.weight == 0.0 &&
+         is_even(control.degrade) && (control.regions.empty() || control.interest_weight == 0.0);
 }
 
 double level_shift(double sum) { return std::clamp(sum, -kMaxShift, kMaxShift); }

@@ -36,7 +36,8 @@ struct ControlFunction {
   double offset = 0;            // levels
   double weight = 0;            // >= 0; 0: the function is not evaluated
   vpe::core::LevelTable table;  // replaces scale and offset if it has rows
-  double x_factor = 1;  // > 0, factor on x; a time budget raises that of the distance, which makes tiles coarser
+  double x_factor =
+      1;  // > 0, factor on x; a time budget raises that of the distance, which makes tiles coarser
   bool operator==(const ControlFunction&) const = default;
 };
 
@@ -113,7 +114,7 @@ struct ControlTerms {
   ControlTerm interest;
   double centre_angle_rad = 0;
   double degrade_weight = 1;  // of the tile, between the weights of LevelControl::degrade
-  double sum = 0;  // of the terms that the metric uses; may be infinite
+  double sum = 0;             // of the terms that the metric uses; may be infinite
 };
 
 // The properties of a tile that the functions use.

@@ -37,13 +37,14 @@ Timed once(core::Renderer& renderer, const core::DrawRequest& request) {
   return {vpe::report::processor_s() - start_s, result.certificate};
 }
 
-core::DrawRequest request_for(const bench::RayScene& scene, double height_m, double pitch_deg, double roll_deg) {
+core::DrawRequest request_for(const bench::RayScene& scene, double height_m, double pitch_deg,
+                              double roll_deg) {
   core::DrawRequest request;
   const double radius_m = scene.planet->radius_m();
   const mars::LonLat place = mars::lon_lat(scene.middle);
   const double ground_m = paging::Surface(scene.planet, std::size_t{8} << 20).at(scene.middle).height_m;
-  request.view.camera = mars::to_camera(
-      {place.lon_deg, place.lat_deg, ground_m + height_m, 22.5, pitch_deg, roll_deg}, radius_m);
+  request.view.camera =
+      mars::to_camera({place.lon_deg, place.lat_deg, ground_m + height_m, 22.5, pitch_deg, roll_deg}, radius_m);
   request.view.width = 1920;
   request.view.height = 1080;
   request.view.fov_deg = 45;
@@ -79,10 +80,10 @@ void compare(const bench::RayScene& scene, core::Renderer& renderer, double shar
       ratios.push_back(of_foveated.processor_s / of_uniform.processor_s);
     }
     const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
-    std::printf("| %g m up, pitch %g, roll %g | %.0f | %.2f (%.2f..%.2f) | %.3f of %.3f | %.2f |\n", pose.height_m,
-                pose.pitch_deg, pose.roll_deg, 1e3 * median(times_s), median(ratios), *low, *high,
-                of_foveated.certificate.middle_bound_px.value_or(0), of_uniform.certificate.shift_bound_px,
-                of_foveated.certificate.shift_bound_px);
+    std::printf("| %g m up, pitch %g, roll %g | %.0f | %.2f (%.2f..%.2f) | %.3f of %.3f | %.2f |\n",
+                pose.height_m, pose.pitch_deg, pose.roll_deg, 1e3 * median(times_s), median(ratios), *low,
+                *high, of_foveated.certificate.middle_bound_px.value_or(0),
+                of_uniform.certificate.shift_bound_px, of_foveated.certificate.shift_bound_px);
     std::fflush(stdout);
   }
 }

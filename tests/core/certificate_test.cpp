@@ -44,27 +44,15 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
   EXPECT_NE(meaning.find("below the ground"), std::string::npos);
   json.erase("what_this_means");
-  EXPECT_EQ(json, nlohmann::json({{"tile_error_m", 1.25},
-                                  {"tile_error_px", 0.5},
-                                  {"quantisation_m", 0.001},
-                                  {"quantisation_px", 0.0001},
-                                  {"shift_bound_px", 0.5001},
-                                  {"picture_bound_px", 0.375},
-                                  {"thinning_px", 2.125},
-                                  {"middle_bound_px", 0.25},
-                                  {"tolerance_px", 1.0},
-                                  {"tiles_drawn", 12},
-                                  {"tiles_missing", 3},
-                                  {"tiles_substituted", 4},
-                                  {"share_at_data_limit", 0.25},
-                                  {"share_without_data", 0.125},
-                                  {"resampling_max_m", 7.5},
-                                  {"resampling_rms_m", 0.75},
-                                  {"source_accuracy_m", 3.0},
-                                  {"illustration", true},
-                                  {"exaggeration", 2.0},
-                                  {"corner_stretch", 2.5},
-                                  {"below_ground", true}}));
+  EXPECT_EQ(
+      json,
+      nlohmann::json({{"tile_error_m", 1.25},        {"tile_error_px", 0.5},        {"quantisation_m", 0.001},
+                      {"quantisation_px", 0.0001},   {"shift_bound_px", 0.5001},    {"picture_bound_px", 0.375},
+                      {"thinning_px", 2.125},        {"middle_bound_px", 0.25},     {"tolerance_px", 1.0},
+                      {"tiles_drawn", 12},           {"tiles_missing", 3},          {"tiles_substituted", 4},
+                      {"share_at_data_limit", 0.25}, {"share_without_data", 0.125}, {"resampling_max_m", 7.5},
+                      {"resampling_rms_m", 0.75},    {"source_accuracy_m", 3.0},    {"illustration", true},
+                      {"exaggeration", 2.0},         {"corner_stretch", 2.5},       {"below_ground", true}}));
 }
 
 TEST(Certificate, TheSourcesSayWhatIsSynthetic) {

@@ -1,4 +1,4 @@
-#include "vpe/explore/angle_text.h"
+#include "vpe/explore/measure/angle_text.h"
 
 #include <gtest/gtest.h>
 

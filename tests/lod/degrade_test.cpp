@@ -164,7 +164,8 @@ TEST(Degrade, ReasonsKnowTheWeights) {
 
 TEST(Degrade, WeightsOutOfRangeAreRefused) {
   for (const lod::DegradeWeights& weights :
-       {lod::DegradeWeights{-1, 1, 1}, lod::DegradeWeights{1, std::nan(""), 1}, lod::DegradeWeights{1, 1, HUGE_VAL}}) {
+       {lod::DegradeWeights{-1, 1, 1}, lod::DegradeWeights{1, std::nan(""), 1},
+        lod::DegradeWeights{1, 1, HUGE_VAL}}) {
     EXPECT_THROW(selected(with_weights(1, 2, weights), rough_tree(), looking_down()), std::invalid_argument);
   }
   EXPECT_THROW(selected(with_weights(1, 0.5, {}), rough_tree(), looking_down()), std::invalid_argument);

@@ -86,7 +86,8 @@ TEST_F(ExplainTiles, AgreesWithTheCertificateTileByTile) {
         ASSERT_LE(e.wanted_level, e.key.level);
       } else {
         ASSERT_EQ(e.reason, LevelReason::kWithinTolerance);
-        ASSERT_LE(e.screen_space_error_px * std::exp2(e.shift), s.ray_cell_px * (s.ray_fovea ? 2 : 1) * (1 + 1e-9));
+        ASSERT_LE(e.screen_space_error_px * std::exp2(e.shift),
+                  s.ray_cell_px * (s.ray_fovea ? 2 : 1) * (1 + 1e-9));
       }
     }
     EXPECT_EQ(largest_m, c.geometric_error_m);

@@ -100,7 +100,8 @@ class OuterRows {
  private:
   core::SubRectangle part_;
   const std::uint8_t* bytes_;
-  std::vector<std::uint16_t> sums_;  // four times the colours of a row, with the border's once more at either end
+  std::vector<std::uint16_t>
+      sums_;  // four times the colours of a row, with the border's once more at either end
 };
 
 // Returns the distance of a pixel from the middle along its farther axis; 0 in it.
@@ -136,8 +137,7 @@ std::optional<FoveaPlan> fovea_plan(const core::DrawRequest& request) {
   if (plan.dense == part) return {};
   plan.outer = downsampled_view(view, kThinned);
   // A pixel more on every side to interpolate with, except at the image's edges.
-  plan.outer.part =
-      common(grown(core::drawn_part(plan.outer), 1), {0, 0, plan.outer.width, plan.outer.height});
+  plan.outer.part = common(grown(core::drawn_part(plan.outer), 1), {0, 0, plan.outer.width, plan.outer.height});
   return plan;
 }
 
@@ -165,9 +165,8 @@ void merge_colours(const FoveaPlan& plan, const core::View& view, const FoveaCol
     OuterRows rows(core::drawn_part(plan.outer), from.outer);
     for (int y = first; y < last; ++y) {
       rows.set_row(y);
-      outside_of(middle, part, y, [&](int begin, int end) {
-        rows.write(begin, end, colour.data() + offset(part, begin, y));
-      });
+      outside_of(middle, part, y,
+                 [&](int begin, int end) { rows.write(begin, end, colour.data() + offset(part, begin, y)); });
       if (y < fading.y || y >= fading.y + fading.height) continue;
       const base::Rgb* const sharp = from.dense.data() + offset(plan.dense, fading.x, y);
       base::Rgb* const out = colour.data() + offset(part, fading.x, y);

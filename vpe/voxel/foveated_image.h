@@ -58,7 +58,7 @@ struct FoveaColours {
   std::span<const base::Rgb> outer;  // of plan.outer
   std::span<const base::Rgb> dense;  // of plan.dense, row by row
 };
-void merge_colours(const FoveaPlan& plan, const core::View& view, const FoveaColours& from, base::ThreadPool& pool,
-                   std::span<base::Rgb> colour);
+void merge_colours(const FoveaPlan& plan, const core::View& view, const FoveaColours& from,
+                   base::ThreadPool& pool, std::span<base::Rgb> colour);
 
 }  // namespace vpe::voxel

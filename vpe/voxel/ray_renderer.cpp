@@ -249,8 +249,8 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
   if (colour.empty()) return;
   std::vector<base::Rgb> outer_colour(outer_m.size());
   const std::int64_t nodata_pixels = paint(outer, outer_m, outer_colour, image);
-  image.nodata_pixels += nodata_pixels * static_cast<std::int64_t>(colour.size()) /
-                         static_cast<std::int64_t>(outer_colour.size());
+  image.nodata_pixels +=
+      nodata_pixels * static_cast<std::int64_t>(colour.size()) / static_cast<std::int64_t>(outer_colour.size());
   std::vector<base::Rgb> dense_colour;
   if (plan.dense.width > 0) {
     const std::vector<float> dense_m = cut_out(range_m, core::drawn_part(request.view), plan.dense);

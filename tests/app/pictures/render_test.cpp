@@ -386,7 +386,8 @@ TEST_F(Render, ExplainsTheTilesThatRaysCast) {
 
 TEST_F(Render, WeightsOfABudgetNeedOne) {
   const std::string pose = "-74,-13.5,60000,20,-60,0";
-  for (const Words& words : {Words{"--backend", "ray", "--set", "rays.mode=multires"}, Words{"--backend", "polygon"}}) {
+  for (const Words& words :
+       {Words{"--backend", "ray", "--set", "rays.mode=multires"}, Words{"--backend", "polygon"}}) {
     Words all = words;
     all.insert(all.end(), {"--set", "degrade.centre=0"});
     const Result result = render(all, pose, "no.png");

@@ -17,10 +17,9 @@ void set(core::Settings& settings, const char* key, const std::string& text) {
 }
 
 core::Settings within_tolerance(core::Settings settings, const RenderOptions& options) {
-  const bool is_named = std::any_of(options.set.begin(), options.set.end(),
-                                    [](const std::string& text) {
-                                      return text.starts_with("rays.") && !text.starts_with("rays.fovea");
-                                    });
+  const bool is_named = std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
+    return text.starts_with("rays.") && !text.starts_with("rays.fovea");
+  });
   const double tolerance_px = settings.values().lod_tolerance_px;
   if (is_named || tolerance_px < core::RayLimits::kLeastCell_px) return settings;
   set(settings, "rays.mode", "multires");

@@ -72,7 +72,8 @@ nlohmann::json explain_lod(const core::DrawRequest& request, std::span<const lod
   nlohmann::json object{{"rule", by_distance ? "distance" : "error"}, {"tiles", tiles}};
   if (by_distance) return object;
   object["tolerance_px"] = request.settings.ray_cell_px;
-  if (request.settings.ray_fovea) object["thinned_tolerance_px"] = voxel::kThinned * request.settings.ray_cell_px;
+  if (request.settings.ray_fovea)
+    object["thinned_tolerance_px"] = voxel::kThinned * request.settings.ray_cell_px;
   return object;
 }
 

@@ -141,8 +141,9 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
 void require_budget(const core::SettingsValues& settings, core::Backend backend) {
   if (lod::is_even(lod::degrade_weights(settings))) return;
   if (backend == core::Backend::kPolygon && settings.lod_triangles > 0) return;
-  throw UsageError("degrade.* weighs what a budget takes, and this image has none: add --set lod.triangles=N with --backend "
-                   "polygon, or leave it out (lod.frame_ms is the budget of windows)");
+  throw UsageError(
+      "degrade.* weighs what a budget takes, and this image has none: add --set lod.triangles=N with --backend "
+      "polygon, or leave it out (lod.frame_ms is the budget of windows)");
 }
 
 void require_complete(const RenderOptions& options, const core::DrawResult& result) {

@@ -19,9 +19,9 @@
 #include "vpe/explore/files/user_files.h"
 #include "vpe/explore/input/gamepad.h"
 #include "vpe/explore/input/head_tracker.h"
+#include "vpe/explore/input/mouse_choices.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
-#include "vpe/explore/mouse_choices.h"
 
 namespace vpe::explore {
 

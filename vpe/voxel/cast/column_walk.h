@@ -13,8 +13,8 @@
 #include "lod/tree/tree.h"
 #include "paging/surface/surface.h"
 #include "vpe/voxel/cast/columns.h"
-#include "vpe/voxel/cast/tile_usage.h"
 #include "vpe/voxel/cast/height_grid_store.h"
+#include "vpe/voxel/cast/tile_usage.h"
 
 namespace vpe::voxel {
 

@@ -82,8 +82,8 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const core::SubRectangle
     batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
     batch.out = samples_[f].data() + window.first_line +
                 (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
-    batch.set_column = [&plan, &sector, first = window.first_line, stop](
-                           int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+    batch.set_column = [&plan, &sector, first = window.first_line, stop](int column, ColumnGroup& group,
+                                                                         int lane, glm::dvec3& azimuth) {
       const SectorLine line = plan.line(sector, first + column);
       azimuth = line.azimuth;
       group.sector_a0[lane] = line.a0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vpe/base/number.h"
-#include "vpe/explore/angle_text.h"
+#include "vpe/explore/measure/angle_text.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
