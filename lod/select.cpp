@@ -156,10 +156,10 @@ class Selector {
 
   // Returns the error of weight 1 that takes as large a budget: both are a tolerance times the same factor, to the
   // power of their weights. So one order serves all weights, under a limit of triangles and under a coarsening.
-  double weighed(double error_px, double weight) const {
-    if (weight == 1.0 || !(error_px > full_tolerance_px_)) return error_px;
+  double weighed(double tile_px, double weight) const {
+    if (weight == 1.0 || !(tile_px > full_tolerance_px_)) return tile_px;
     if (weight == 0.0) return std::numeric_limits<double>::infinity();
-    return full_tolerance_px_ * std::pow(error_px / full_tolerance_px_, 1.0 / weight);
+    return full_tolerance_px_ * std::pow(tile_px / full_tolerance_px_, 1.0 / weight);
   }
 
   void measure(Candidate& c, const cull::BoundingRegion& region) const {

@@ -71,10 +71,10 @@ TEST(Degrade, EachTileLosesByItsWeight) {
       const lod::TileKey parent = lod::ancestor(tile.key, tile.key.level - 1);
       const auto index = static_cast<TileTree::Index>(rough_tree().find(parent) - &rough_tree()[0]);
       const lod::SelectView seen = lod::select_view(view);
-      const double error_px = lod::measure_tile(options, rough_tree(), seen, index, 0).screen_space_error_px;
+      const double parent_px = lod::measure_tile(options, rough_tree(), seen, index, 0).screen_space_error_px;
       // The parent of a selected tile was refined, with a magnification of at most that of its own parent.
-      above += error_px > limit_px(parent) ? 1 : 0;
-      ASSERT_GE(error_px, limit_px(parent) * (1 - 1e-9)) << lod::to_string(parent);
+      above += parent_px > limit_px(parent) ? 1 : 0;
+      ASSERT_GE(parent_px, limit_px(parent) * (1 - 1e-9)) << lod::to_string(parent);
     }
   }
   EXPECT_GT(tiles, 1000);

@@ -20,7 +20,7 @@ namespace {
 const ImVec4 kKeyColour{1, 0.84F, 0.55F, 1};
 
 void draw_control_panel(explore::Session& session, WindowState& state, Widgets& widgets) {
-  ImGui::BeginChild("control");
+  begin_part("control");
   ImGui::PushItemWidth(ImGui::GetFontSize() * 11);
   mars::Pose pose = session.pose();
   bool changed = widgets.number("Longitude", pose.lon_deg, -360, 360, 0.1, "%.6f");
@@ -148,6 +148,7 @@ void draw_recording_sign(const ViewArea& area, double scale) {
 void ExploreWindow::draw_frame() {
   display_.begin_frame();
   widgets_.begin_frame();
+  panel_focus_.begin_frame();
   find_cursor();
   if (state_.large_map) {
     if (large_map_ == nullptr)
@@ -155,7 +156,8 @@ void ExploreWindow::draw_frame() {
     ImGui::SetNextWindowPos(at(view_area_.x, view_area_.y));
     ImGui::SetNextWindowSize(at(view_area_.width, view_area_.height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(0, 0));
-    ImGui::Begin("large map", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+    ImGui::Begin("large map", nullptr,
+                 kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
     widgets_.group("large");
     draw_map(*large_map_, static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
     widgets_.group("");
@@ -196,7 +198,8 @@ void ExploreWindow::draw_over_view() {
         at(view_area_.x, view_area_.y + view_area_.height - MeasurePanel::kStrip_px * scale));
     ImGui::SetNextWindowSize(at(view_area_.width, MeasurePanel::kStrip_px * scale));
     ImGui::SetNextWindowBgAlpha(0.85F);
-    ImGui::Begin("profile strip", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+    ImGui::Begin("profile strip", nullptr,
+                 kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
     const MeasureActions actions = measure_.draw_profile(widgets_);
     if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
     ImGui::End();
@@ -302,7 +305,7 @@ void ExploreWindow::draw_tabs() {
     ImGui::EndTabItem();
   }
   if (tab("Measure")) {
-    ImGui::BeginChild("measure");
+    begin_part("measure");
     const MeasureActions actions = measure_.draw(session_, under_cursor_, widgets_);
     if (actions.go_to) session_.go_to(*actions.go_to);
     if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);

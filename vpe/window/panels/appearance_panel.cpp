@@ -76,7 +76,7 @@ std::string AppearancePanel::draw(explore::Session& session, const DrawnImage* d
   session_ = &session;
   widgets_ = &widgets;
   error_.clear();
-  ImGui::BeginChild("appearance");
+  begin_part("appearance");
   draw_looks();
   draw_palette();
   double exaggeration = session.settings().values().exaggeration;
@@ -163,7 +163,7 @@ void AppearancePanel::draw_sun() {
     set("sun", season_text(ls_deg, hour));
   const core::SettingsValues& values = session_->settings().values();
   // Both have the same height, so that what is below stays at its place.
-  ImGui::BeginChild("sun", ImVec2(0, ImGui::GetFontSize() * 6.2F));
+  begin_part("sun", ImVec2(0, ImGui::GetFontSize() * 6.2F));
   if (is_season)
     draw_season();
   else if (sun == "local")

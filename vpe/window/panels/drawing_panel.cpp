@@ -55,7 +55,7 @@ void DrawingPanel::tell(const std::string& text) {
 
 void DrawingPanel::draw(Widgets& widgets) {
   shown_frame_ = ImGui::GetFrameCount();
-  ImGui::BeginChild("draw");
+  begin_part("draw");
   draw_tools(widgets);
   draw_list(widgets);
   const Drawings::Shared selected = drawings_.find(sketch_.selected());
@@ -90,7 +90,7 @@ void DrawingPanel::draw_tools(Widgets& widgets) {
 }
 
 void DrawingPanel::draw_list(Widgets& widgets) {
-  ImGui::BeginChild("drawings", ImVec2(0, ImGui::GetFrameHeightWithSpacing() * 5), true);
+  begin_part("drawings", ImVec2(0, ImGui::GetFrameHeightWithSpacing() * 5), true);
   // The list may change while it is drawn.
   const std::vector<Drawings::Shared> all(drawings_.all().begin(), drawings_.all().end());
   ImGuiListClipper clipper;
@@ -192,7 +192,7 @@ void DrawingPanel::draw_measures(const Drawing& drawing) {
 
 void DrawingPanel::draw_vertices(const Drawing& drawing, Widgets& widgets) {
   if (drawing.kind == DrawingKind::kPoint) return;
-  ImGui::BeginChild("vertices", ImVec2(0, ImGui::GetFrameHeightWithSpacing() * 4), true);
+  begin_part("vertices", ImVec2(0, ImGui::GetFrameHeightWithSpacing() * 4), true);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(drawing.vertices.size()));
   while (clipper.Step()) {

@@ -9,6 +9,7 @@
 #include "vpe/base/file.h"
 #include "vpe/explore/measure/read_out.h"
 #include "vpe/explore/steer.h"
+#include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
 
@@ -47,7 +48,7 @@ FlightPanel::FlightPanel(std::string file, std::filesystem::path folder)
 
 FlightActions FlightPanel::draw(explore::Session& session, bool is_recording, Widgets& widgets) {
   FlightActions actions;
-  ImGui::BeginChild("flight");
+  begin_part("flight");
   const bool follows = session.follows_flight();
   const explore::FlightPlayer* player = session.player();
   const bool plays = follows && player != nullptr && player->is_playing();
@@ -176,7 +177,7 @@ void FlightPanel::draw_waypoints(explore::Session& session, FlightActions& actio
 
 void FlightPanel::draw_list(const std::vector<scripts::Waypoint>& waypoints, Widgets& widgets) {
   // A log may have a hundred thousand waypoints: only visible rows are drawn.
-  ImGui::BeginChild("rows", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 6), true);
+  begin_part("rows", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 6), true);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(waypoints.size()));
   while (clipper.Step()) {

@@ -76,7 +76,7 @@ MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional
                                   Widgets& widgets) {
   take();
   MeasureActions actions;
-  ImGui::BeginChild("measure");
+  begin_part("measure");
   if (ImGui::CollapsingHeader("Under the cursor", ImGuiTreeNodeFlags_DefaultOpen))
     draw_read_out(session, under_cursor);
   if (ImGui::CollapsingHeader("Place", ImGuiTreeNodeFlags_DefaultOpen)) draw_place(actions, widgets);
@@ -110,7 +110,7 @@ void MeasurePanel::draw_read_out(const explore::Session& session, std::optional<
     }
   }
   // Of one height, so that what is below stays where it is while the cursor moves.
-  ImGui::BeginChild("read-out", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 11.5F));
+  begin_part("read-out", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 11.5F));
   if (!read_out_error_.empty()) {
     coloured(kErrorColour, read_out_error_);
   } else if (read_out_.empty()) {

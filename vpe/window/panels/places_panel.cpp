@@ -65,7 +65,7 @@ PlacesActions PlacesPanel::draw(const explore::Session& session, explore::Bookma
   if (ImGui::GetFrameCount() - last_frame_ > 1) is_read_ = false;
   last_frame_ = ImGui::GetFrameCount();
   if (!is_read_) read();
-  ImGui::BeginChild("places");
+  begin_part("places");
   if (project != nullptr) {
     draw_project(session, *project, actions, widgets);
     ImGui::Separator();

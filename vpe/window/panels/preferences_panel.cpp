@@ -106,7 +106,7 @@ PreferencesActions draw_preferences(const ViewArea& area, double scale, const ex
   if (widgets.button("As at first", "all preferences get their defaults"))
     actions.changed = explore::Preferences{};
   ImGui::Separator();
-  ImGui::BeginChild("keys");
+  begin_part("keys");
   if (ImGui::BeginTable("keys", 2)) {
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 10);
     ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);

@@ -55,7 +55,7 @@ void draw_regions(explore::Session& session, Widgets& widgets) {
 std::string draw_detail_panel(explore::Session& session, const DrawnImage* drawn,
                               const paging::PlanetFile& planet, Widgets& widgets) {
   SettingRows rows(session, drawn, widgets);
-  ImGui::BeginChild("detail");
+  begin_part("detail");
   draw_regions(session, widgets);
   if (ImGui::CollapsingHeader("Level of detail", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("lod.");
   if (ImGui::CollapsingHeader("Rays", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("rays.");

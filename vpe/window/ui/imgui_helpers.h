@@ -22,6 +22,11 @@ inline constexpr ImGuiWindowFlags kFixed =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
+// Begins a part of a panel that scrolls by itself; keys lead into and out of it like over any widget.
+inline void begin_part(const char* name, const ImVec2& size = {0, 0}, bool has_border = false) {
+  ImGui::BeginChild(name, size, has_border, ImGuiWindowFlags_NavFlattened);
+}
+
 // Converts a position from doubles to Dear ImGui's floats.
 inline ImVec2 at(double x, double y) { return {static_cast<float>(x), static_cast<float>(y)}; }
 

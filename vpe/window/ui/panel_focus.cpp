@@ -4,6 +4,7 @@
 #include <imgui_internal.h>
 
 #include <array>
+#include <utility>
 
 namespace vpe::window {
 
@@ -26,12 +27,18 @@ void PanelFocus::next() {
     at_ = n;
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui::SetWindowFocus(kWindows[n]);
-    // Shows the highlight at once, at the window's first widget.
-    ImGui::NavInitWindow(ImGui::FindWindowByName(kWindows[n]), true);
-    ImGui::GetCurrentContext()->NavDisableHighlight = false;
+    is_new_ = true;
     return;
   }
   leave();
+}
+
+void PanelFocus::begin_frame() {
+  if (!at_ || !std::exchange(is_new_, false)) return;
+  // ImGui drops such requests between frames.
+  if (ImGuiWindow* window = ImGui::FindWindowByName(kWindows[*at_]); window != nullptr)
+    ImGui::NavInitWindow(window, true);
+  ImGui::GetCurrentContext()->NavDisableHighlight = false;
 }
 
 void PanelFocus::leave() {

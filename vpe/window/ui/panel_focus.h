@@ -16,11 +16,14 @@ class PanelFocus {
   // between frames.
   void next();
   void leave();
+  // Puts the highlight on the first widget of a window that has just got the keyboard. Call it as a frame begins.
+  void begin_frame();
   // Returns where the highlight is, or nullopt.
   static std::optional<WidgetPlace> highlight();
 
  private:
   std::optional<std::size_t> at_;  // index of the window
+  bool is_new_ = false;            // the highlight is not there yet
 };
 
 }  // namespace vpe::window
