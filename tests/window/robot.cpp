@@ -71,6 +71,11 @@ void Robot::move(double x, double y) {
   XSync(connection_->display, False);
 }
 
+void Robot::move_by(int dx, int dy) {
+  XTestFakeRelativeMotionEvent(connection_->display, dx, dy, 0);
+  XSync(connection_->display, False);
+}
+
 void Robot::press(int button) {
   XTestFakeButtonEvent(connection_->display, static_cast<unsigned>(button), True, 0);
   XSync(connection_->display, False);
@@ -106,6 +111,11 @@ void Robot::key_up(const std::string& name) {
 void Robot::key(const std::string& name) {
   key_down(name);
   key_up(name);
+}
+
+void Robot::take_focus() {
+  XSetInputFocus(connection_->display, DefaultRootWindow(connection_->display), RevertToNone, CurrentTime);
+  XSync(connection_->display, False);
 }
 
 }  // namespace vpe::window

@@ -30,12 +30,14 @@ class Robot {
   Robot& operator=(const Robot&) = delete;
 
   void move(double x, double y);
+  void move_by(int dx, int dy);  // as a mouse does, also where a cursor is held
   void press(int button = 1);
   void release(int button = 1);
   void wheel(int notches);                 // away from the hand
   void key_down(const std::string& name);  // X's names: "w", "F1", "space"
   void key_up(const std::string& name);
   void key(const std::string& name);
+  void take_focus();  // from the window, as another program does
 
  private:
   struct Connection;

@@ -178,6 +178,10 @@ std::string ExploreWindow::act(const explore::Action& action) {
       show_message(std::string(explore::to_string(mode)) + ": " + std::string(explore::meaning(mode)));
       return {};
     }
+    case Kind::kCatchCursor:
+      if (!display_.has_caught_cursor()) return catch_cursor();
+      let_cursor_go();
+      return {};
     case Kind::kPlayPause: {
       const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
       return session_.follow(flight == nullptr || !flight->is_playing());

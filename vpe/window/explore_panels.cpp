@@ -10,7 +10,6 @@
 #include "vpe/explore/places/arrival.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
-#include "vpe/window/panels/overlay_bar.h"
 #include "vpe/window/panels/settings_panels.h"
 
 namespace vpe::window {
@@ -38,7 +37,7 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
   if (changed) session.put(pose);
   double fov = session.screen().fov_deg;
   if (widgets.slide("Field of view", fov, 5, 120, "%.1f°", true)) session.set_fov(fov);
-  widgets.slide("Speed", state.speed, 0.05, 20, "%.2f x", true,
+  widgets.slide("Speed", state.speed, WindowState::kSlowest, WindowState::kFastest, "%.2f x", true,
                 "factor on the speed of keys and sticks, which also grows with the height");
   ImGui::PopItemWidth();
   if (widgets.button("North up", "N")) session.north_up();
@@ -80,6 +79,8 @@ void draw_explore_help(const ViewArea& area, bool& is_open, Widgets& widgets) {
       {"left drag", "move the ground with the cursor; in a flight: look around"},
       {"wheel", "zoom to the ground under the cursor; in a flight: field of view"},
       {"Ctrl + left drag", "look around in place; in fly and walk any left drag does"},
+      {"X in fly, walk, drive",
+       "the mouse looks around without a button, the wheel sets the speed; Esc or X ends it"},
       {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
       {"double click", "fly there"},
       {"with a tool of Draw",
@@ -118,31 +119,6 @@ void draw_explore_help(const ViewArea& area, bool& is_open, Widgets& widgets) {
   ImGui::End();
 }
 
-// Draws a message over the middle of a view's lower edge, whole.
-void draw_note(const ViewArea& area, const std::string& text, bool is_error, double scale) {
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  const double margin = 10 * scale;
-  const double most = std::max(40.0, area.width - 4 * margin);
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, static_cast<float>(most));
-  const double wide = static_cast<double>(size.x);
-  const double left = area.x + (area.width - wide) / 2;
-  const double top = area.y + area.height - margin - static_cast<double>(size.y);
-  list.AddRectFilled(at(left - margin, top - margin),
-                     at(left + wide + margin, top + static_cast<double>(size.y)), IM_COL32(0, 0, 0, 170), 4);
-  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(left, top - margin / 2),
-               ImGui::ColorConvertFloat4ToU32(is_error ? kErrorColour : kSuccessColour), text.c_str(), nullptr,
-               static_cast<float>(most));
-}
-
-// Draws a red dot at the upper right of the view while the session is recorded.
-void draw_recording_sign(const ViewArea& area, double scale) {
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  const double radius = 6 * scale;
-  const ImVec2 middle = at(area.x + area.width - 3 * radius, area.y + 3 * radius);
-  list.AddCircleFilled(middle, static_cast<float>(radius * 1.35), IM_COL32(0, 0, 0, 150));
-  list.AddCircleFilled(middle, static_cast<float>(radius), IM_COL32(235, 40, 30, 255));
-}
-
 }  // namespace
 
 void ExploreWindow::draw_frame() {
@@ -174,8 +150,7 @@ void ExploreWindow::draw_frame() {
     draw_side_handle();
     draw_status();
   }
-  if (!state_.message.empty()) draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
-  if (recorder_.is_recording()) draw_recording_sign(view_area_, display_.scale());
+  draw_notes();
   if (state_.files) draw_files();
   if (state_.preferences) draw_preferences();
   if (state_.help) draw_explore_help(view_area_, state_.help, widgets_);
@@ -183,51 +158,6 @@ void ExploreWindow::draw_frame() {
   tip_at_s_ = widgets_.tip_due_s() ? std::optional(now_s() + *widgets_.tip_due_s()) : std::nullopt;
   if (Display::has_input_left()) frames_due_ = std::max(frames_due_, kFramesAfterChange);
   ++frames_;
-}
-
-// Draws the windows that lie over the view: switches of overlays, the profile, the first hints.
-void ExploreWindow::draw_over_view() {
-  if (state_.large_map || guide_.inside() != nullptr) return;
-  const double scale = display_.scale();
-  if (const std::string error = draw_overlay_bar(view_area_, scale, session_, setup_.places_file, widgets_);
-      !error.empty())
-    show_message(error, true);
-  draw_modes();
-  if (measure_.points().size() >= 2 && view_area_.height > 2 * MeasurePanel::kStrip_px * scale) {
-    ImGui::SetNextWindowPos(
-        at(view_area_.x, view_area_.y + view_area_.height - MeasurePanel::kStrip_px * scale));
-    ImGui::SetNextWindowSize(at(view_area_.width, MeasurePanel::kStrip_px * scale));
-    ImGui::SetNextWindowBgAlpha(0.85F);
-    ImGui::Begin("profile strip", nullptr,
-                 kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
-    const MeasureActions actions = measure_.draw_profile(widgets_);
-    if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
-    ImGui::End();
-  } else if (!layout_.is_narrow || layout_.side.width <= 0) {
-    if (const auto place = welcome_.draw(view_area_, scale, widgets_)) fly_to(*place);
-  }
-}
-
-void ExploreWindow::draw_modes() {
-  const double scale = display_.scale();
-  const double beside = layout_.is_narrow ? layout_.side.width + 30 * scale : view_area_.x + 6 * scale;
-  ImGui::SetNextWindowPos(at(beside, view_area_.y + 6 * scale));
-  ImGui::SetNextWindowBgAlpha(0.55F);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(4 * scale, 4 * scale));
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, at(3 * scale, 3 * scale));
-  ImGui::Begin("modes", nullptr,
-               kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-  for (const explore::MotionMode mode : explore::motion_modes()) {
-    if (mode != explore::motion_modes().front()) ImGui::SameLine();
-    bool is_on = session_.mode() == mode;
-    const std::string name(explore::to_string(mode));
-    if (widgets_.toggle(name.c_str(), is_on, (std::string(explore::meaning(mode)) + " (F)").c_str()) && is_on) {
-      session_.set_mode(mode);
-      show_message(name + ": " + std::string(explore::meaning(mode)));
-    }
-  }
-  ImGui::End();
-  ImGui::PopStyleVar(2);
 }
 
 void ExploreWindow::fly_to(const core::Place& place) {

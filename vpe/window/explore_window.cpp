@@ -19,8 +19,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kShortestFrame_s = 1.0 / 120;
-constexpr double kDoubleClick_s = 0.35;
-constexpr double kDoubleClick_px = 6;
 constexpr double kIdle_s = 0.5;
 constexpr double kMessage_s = 6;  // for which it is shown
 constexpr double kError_s = 30;
@@ -156,7 +154,7 @@ bool ExploreWindow::step(double wait_s) {
   if (display_.should_close()) return false;
   for (const Event& event : events) {
     handle(event);
-    const bool hovers = event.kind == Event::Kind::kMove && is_over_view();
+    const bool hovers = event.kind == Event::Kind::kMove && (display_.has_caught_cursor() || is_over_view());
     if (!hovers) next_frame_s_ = 0;
     frames_due_ = std::max(frames_due_, hovers ? 1 : kFramesAfterChange);
   }
@@ -167,6 +165,7 @@ bool ExploreWindow::step(double wait_s) {
     if (const std::string error = act(action); !error.empty()) show_message(error, true);
     frames_due_ = kFramesAfterChange;
   }
+  follow_caught_cursor();
   const auto now = Clock::now();
   // The time of a rest does not count as motion.
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
@@ -241,88 +240,6 @@ void ExploreWindow::keep_work(bool is_busy) {
   session_kept_s_ = now_s();
   session_kept_ = now;
   setup_.keep_session(*this);
-}
-
-void ExploreWindow::handle(const Event& event) {
-  cursor_ = {event.x, event.y};
-  const ImGuiIO& io = ImGui::GetIO();
-  const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
-                      event.kind == Event::Kind::kKeyRelease;
-  if (event.kind == Event::Kind::kDrop) {
-    if (!event.files.empty()) open_file(event.files.front());
-    return;
-  }
-  if (guide_.inside() != nullptr && !is_key) {
-    if (event.kind == Event::Kind::kRelease) session_.release();
-    guide_.inside()->handle(event, io.WantCaptureMouse);
-    return;
-  }
-  if (handle_panel_keys(event) || handle_drawing(event)) return;
-  switch (event.kind) {
-    case Event::Kind::kKeyPress:
-    case Event::Kind::kKeyRepeat:
-    case Event::Kind::kKeyRelease: devices_.key(event); break;
-    case Event::Kind::kPress:
-    case Event::Kind::kRelease: handle_button(event); break;
-    case Event::Kind::kMove:
-      if (session_.mouse_use() != explore::MouseUse::kNone)
-        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_, event.time_s);
-      break;
-    case Event::Kind::kScroll:
-      if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
-        scroll(*xy, event.scroll);
-      break;
-    case Event::Kind::kDrop: break;  // handled above
-  }
-}
-
-// Returns true if the event was a key that leads from panel to panel.
-bool ExploreWindow::handle_panel_keys(const Event& event) {
-  if (!panel_focus_.is_on() || event.kind != Event::Kind::kKeyPress) return false;
-  if (event.code == GLFW_KEY_F6) {
-    panel_focus_.next();
-    return true;
-  }
-  const bool is_used = ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
-  if (event.code != GLFW_KEY_ESCAPE || is_used) return false;
-  panel_focus_.leave();
-  return true;
-}
-
-void ExploreWindow::scroll(glm::dvec2 xy, double notches) {
-  welcome_.dismiss();
-  session_.wheel(xy, notches);
-}
-
-void ExploreWindow::handle_button(const Event& event) {
-  if (event.kind == Event::Kind::kRelease) {
-    session_.release(event.time_s);
-    return;
-  }
-  const std::optional<glm::dvec2> over = image_layout().camera_xy(cursor_);
-  if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
-  panel_focus_.leave();
-  welcome_.dismiss();
-  const glm::dvec2 xy = *over;
-  held_half_ = image_layout().unwrapped_xy(cursor_) - xy;
-  if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
-    const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
-                       glm::length(last_press_->second - cursor_) < kDoubleClick_px;
-    last_press_ = again ? std::nullopt : std::optional(std::pair{event.time_s, cursor_});
-    if (again) {
-      session_.release();
-      session_.fly_towards(xy);
-      return;
-    }
-    const bool tilts = (event.modifiers & GLFW_MOD_SHIFT) != 0;
-    const bool looks = (event.modifiers & GLFW_MOD_CONTROL) != 0;
-    session_.press(looks   ? explore::MouseUse::kLook
-                   : tilts ? explore::MouseUse::kTilt
-                           : explore::MouseUse::kHold,
-                   xy, event.time_s);
-    return;
-  }
-  session_.press(explore::MouseUse::kTilt, xy, event.time_s);
 }
 
 void ExploreWindow::lay_out() {

@@ -106,11 +106,14 @@ struct ExploreSetup : ShownPlanet {
 
 // Holds the state of the window apart from the session.
 struct WindowState {
+  static constexpr double kSlowest = 0.05;
+  static constexpr double kFastest = 20;
+
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   core::Backend backend = core::Backend::kPolygon;  // of the last image that was requested
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;  // 0: a thirtieth of the height above ground
-  double speed = 1;       // factor on motion by hand
+  double speed = 1;       // factor on motion by hand, kSlowest to kFastest
   bool panels = true;
   double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
   bool side_is_open = false;  // in a narrow window
@@ -222,13 +225,19 @@ class ExploreWindow {
   };
 
   void handle(const Event& event);
+  // explore_input.cpp:
   void handle_button(const Event& event);
+  void scroll(glm::dvec2 xy, double notches);
+  bool handle_caught(const Event& event);
+  void add_speed(double notches);
+  std::string catch_cursor();  // returns what is wrong, or ""
+  void let_cursor_go();
+  void follow_caught_cursor();
   void lay_out();
   void draw_frame();
   void find_cursor();
   ImageLayout image_layout() const { return {view_area_, chooser_.choice().stereo}; }
   bool maps_rest() const;
-  void scroll(glm::dvec2 xy, double notches);
   bool step_overlook(const DeviceReading& input, double dt_s);
   void leave_overlook();
   void draw_view();
@@ -236,6 +245,7 @@ class ExploreWindow {
   void draw_tabs();
   void draw_side_handle();
   void draw_over_view();
+  void draw_notes();
   void draw_modes();
   void draw_status();
   void draw_map(MapPanel& map, int width, int height);

@@ -26,6 +26,7 @@ constexpr std::array kActions{
     ActionInfo{K::kZoomReset, "zoom-reset", "reset the field of view"},
     ActionInfo{K::kNextMode, "next-mode", "next mode of motion: orbit, fly, walk"},
     ActionInfo{K::kPreviousMode, "previous-mode", "previous mode of motion"},
+    ActionInfo{K::kCatchCursor, "catch-cursor", "fly, walk, drive: look around by moving the mouse"},
     ActionInfo{K::kPlayPause, "play-pause", "play the flight, or pause"},
     ActionInfo{K::kRecord, "record", "start or stop recording a flight"},
     ActionInfo{K::kPlaceWaypoint, "place-waypoint", "place a waypoint here"},

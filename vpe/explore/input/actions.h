@@ -23,6 +23,7 @@ enum class ActionKind {
   kZoomReset,
   kNextMode,
   kPreviousMode,
+  kCatchCursor,
   kPlayPause,
   kRecord,
   kPlaceWaypoint,

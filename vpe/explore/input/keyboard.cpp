@@ -52,6 +52,7 @@ std::vector<PressedBinding> make_pressed() {
       {{Key::k0, kAlone}, {A::kZoomReset}},
       {{Key::kF, kAlone}, {A::kNextMode}},
       {{Key::kF, kShift}, {A::kPreviousMode}},
+      {{Key::kX, kAlone}, {A::kCatchCursor}},
       {{Key::kSpace, kAlone}, {A::kPlayPause}},
       {{Key::kL, kAlone}, {A::kRecord}},
       {{Key::kP, kAlone}, {A::kPlaceWaypoint}},

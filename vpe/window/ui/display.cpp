@@ -66,10 +66,12 @@ void on_button(GLFWwindow* window, int button, int action, int modifiers) {
 
 void on_move(GLFWwindow* window, double x, double y) {
   Display::State& state = state_of(window);
-  state.x = x * state.to_pixels;
-  state.y = y * state.to_pixels;
   Event event;
   event.kind = Event::Kind::kMove;
+  event.dx = x * state.to_pixels - state.x;
+  event.dy = y * state.to_pixels - state.y;
+  state.x = x * state.to_pixels;
+  state.y = y * state.to_pixels;
   add(window, event);
 }
 
@@ -84,6 +86,13 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
   Event event;
   event.kind = Event::Kind::kDrop;
   for (int n = 0; n < count; ++n) event.files.emplace_back(paths[n]);
+  add(window, event);
+}
+
+void on_focus(GLFWwindow* window, int has_focus) {
+  if (has_focus == GLFW_TRUE) return;
+  Event event;
+  event.kind = Event::Kind::kFocusLost;
   add(window, event);
 }
 
@@ -151,6 +160,7 @@ Display::Display(const DisplayOptions& options) : state_(std::make_unique<State>
   glfwSetCursorPosCallback(window_, on_move);
   glfwSetScrollCallback(window_, on_scroll);
   glfwSetDropCallback(window_, on_drop);
+  glfwSetWindowFocusCallback(window_, on_focus);
 
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
@@ -220,6 +230,28 @@ void Display::set_fullscreen(bool on) {
     return;
   }
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+void Display::catch_cursor(bool on) {
+  if (on == has_caught_cursor_) return;
+  has_caught_cursor_ = on;
+  double x = 0;
+  double y = 0;
+  int width = 1;
+  int height = 1;
+  glfwGetCursorPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  // GLFW brings a cursor from beside the window into it, and tells that way as a motion.
+  const bool is_beside = x < 0 || y < 0 || x >= width || y >= height;
+  if (on && is_beside) glfwSetCursorPos(window_, width / 2.0, height / 2.0);
+  if (glfwRawMouseMotionSupported() == GLFW_TRUE)
+    glfwSetInputMode(window_, GLFW_RAW_MOUSE_MOTION, on ? GLFW_TRUE : GLFW_FALSE);
+  glfwSetInputMode(window_, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  int& flags = ImGui::GetIO().ConfigFlags;
+  flags = on ? flags | ImGuiConfigFlags_NoMouse : flags & ~ImGuiConfigFlags_NoMouse;
+  glfwGetCursorPos(window_, &x, &y);
+  state_->x = x * state_->to_pixels;
+  state_->y = y * state_->to_pixels;
 }
 
 std::vector<Event> Display::events(double wait_s) {

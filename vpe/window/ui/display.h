@@ -43,13 +43,17 @@ struct Event {
     kRelease,
     kMove,
     kScroll,
-    kDrop
+    kDrop,
+    kFocusLost
   };
   Kind kind = Kind::kMove;
   int code = 0;  // key or button
   int modifiers = 0;
   double x = 0;  // cursor, framebuffer pixels
   double y = 0;
+  double dx =
+      0;  // motion of the cursor since the last kMove, framebuffer pixels; while it is caught, without end
+  double dy = 0;
   double scroll = 0;
   double time_s = 0;  // since GLFW was initialised
   std::vector<std::string> files;
@@ -79,6 +83,10 @@ class Display {
   void set_title(const std::string& title);
   void set_fullscreen(bool on);
   bool is_fullscreen() const { return is_fullscreen_; }
+  // Hides the cursor and holds it, so that only its motion counts (Event::dx, dy); unaccelerated, where the system can
+  // say that. ImGui sees no mouse meanwhile. Off puts the cursor back to where it was.
+  void catch_cursor(bool on);
+  bool has_caught_cursor() const { return has_caught_cursor_; }
 
   // Waits for events for at most `wait_s` seconds (0: does not wait). Returns the events since the last call.
   std::vector<Event> events(double wait_s);
@@ -102,6 +110,7 @@ class Display {
   GLFWwindow* window_ = nullptr;
   double scale_ = 1;
   bool is_fullscreen_ = false;
+  bool has_caught_cursor_ = false;
   int windowed_[4] = {0, 0, 1280, 720};  // position and size outside of full screen
 };
 

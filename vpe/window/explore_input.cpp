@@ -1,0 +1,167 @@
+// Mouse and keys of the explore window, and the cursor that is caught for looking around.
+//
+// GLFW would include OpenGL's own headers.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <utility>
+
+#include "vpe/window/explore_window.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr double kDoubleClick_s = 0.35;
+constexpr double kDoubleClick_px = 6;
+
+}  // namespace
+
+void ExploreWindow::handle(const Event& event) {
+  if (display_.has_caught_cursor()) {
+    if (handle_caught(event)) return;
+  } else {
+    cursor_ = {event.x, event.y};
+  }
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
+                      event.kind == Event::Kind::kKeyRelease;
+  if (event.kind == Event::Kind::kDrop) {
+    if (!event.files.empty()) open_file(event.files.front());
+    return;
+  }
+  if (guide_.inside() != nullptr && !is_key) {
+    if (event.kind == Event::Kind::kRelease) session_.release();
+    guide_.inside()->handle(event, io.WantCaptureMouse);
+    return;
+  }
+  if (handle_panel_keys(event) || handle_drawing(event)) return;
+  switch (event.kind) {
+    case Event::Kind::kKeyPress:
+    case Event::Kind::kKeyRepeat:
+    case Event::Kind::kKeyRelease: devices_.key(event); break;
+    case Event::Kind::kPress:
+    case Event::Kind::kRelease: handle_button(event); break;
+    case Event::Kind::kMove:
+      if (session_.mouse_use() != explore::MouseUse::kNone)
+        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_, event.time_s);
+      break;
+    case Event::Kind::kScroll:
+      if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
+        scroll(*xy, event.scroll);
+      break;
+    case Event::Kind::kFocusLost:
+    case Event::Kind::kDrop: break;  // handled above
+  }
+}
+
+// Returns true if the event was a key that leads from panel to panel.
+bool ExploreWindow::handle_panel_keys(const Event& event) {
+  if (!panel_focus_.is_on() || event.kind != Event::Kind::kKeyPress) return false;
+  if (event.code == GLFW_KEY_F6) {
+    panel_focus_.next();
+    return true;
+  }
+  const bool is_used = ImGui::GetIO().WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+  if (event.code != GLFW_KEY_ESCAPE || is_used) return false;
+  panel_focus_.leave();
+  return true;
+}
+
+void ExploreWindow::scroll(glm::dvec2 xy, double notches) {
+  welcome_.dismiss();
+  session_.wheel(xy, notches);
+}
+
+// Returns true if the event belongs to the cursor that is caught, or ends that.
+bool ExploreWindow::handle_caught(const Event& event) {
+  switch (event.kind) {
+    case Event::Kind::kMove: session_.look_by(event.dx, event.dy); return true;
+    case Event::Kind::kScroll: add_speed(event.scroll); return true;
+    case Event::Kind::kPress:
+    case Event::Kind::kRelease: return true;
+    case Event::Kind::kFocusLost: let_cursor_go(); return true;
+    case Event::Kind::kKeyPress:
+      if (event.code != GLFW_KEY_ESCAPE) return false;
+      let_cursor_go();
+      return true;
+    default: return false;
+  }
+}
+
+// Changes the speed of the mode. On foot and in the vehicle the wheel has another meaning while the cursor is free.
+void ExploreWindow::add_speed(double notches) {
+  if (!session_.mover().is_on_ground()) {
+    session_.wheel(cursor_, notches);
+    if (session_.follows_flight()) return;  // there it is the field of view
+    return show_message("speed " + formatted("%.3g", session_.mover().speed()));
+  }
+  const double sign = setup_.session.invert_wheel ? -1 : 1;
+  state_.speed = std::clamp(state_.speed * std::pow(explore::Mover::kSpeedNotch, sign * notches),
+                            WindowState::kSlowest, WindowState::kFastest);
+  show_message("speed " + formatted("%.3g", state_.speed));
+}
+
+std::string ExploreWindow::catch_cursor() {
+  if (session_.mode() == explore::MotionMode::kOrbit)
+    return "the mouse looks around in fly, walk and drive; F changes the mode";
+  state_.help = state_.files = state_.large_map = false;
+  panel_focus_.leave();
+  welcome_.dismiss();
+  session_.release();
+  display_.catch_cursor(true);
+  frames_due_ = kFramesAfterChange;
+  return {};
+}
+
+void ExploreWindow::let_cursor_go() {
+  display_.catch_cursor(false);
+  frames_due_ = kFramesAfterChange;
+}
+
+// Lets the cursor go where it is needed, or nothing is left to look at; else it stands in the middle of the view.
+void ExploreWindow::follow_caught_cursor() {
+  if (!display_.has_caught_cursor()) return;
+  const bool needs_cursor =
+      state_.help || state_.files || state_.large_map || ImGui::GetIO().WantTextInput || panel_focus_.is_on();
+  if (needs_cursor || guide_.inside() != nullptr || session_.mode() == explore::MotionMode::kOrbit)
+    return let_cursor_go();
+  cursor_ = {view_area_.x + view_area_.width / 2, view_area_.y + view_area_.height / 2};
+}
+
+void ExploreWindow::handle_button(const Event& event) {
+  if (event.kind == Event::Kind::kRelease) {
+    session_.release(event.time_s);
+    return;
+  }
+  const std::optional<glm::dvec2> over = image_layout().camera_xy(cursor_);
+  if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
+  panel_focus_.leave();
+  welcome_.dismiss();
+  const glm::dvec2 xy = *over;
+  held_half_ = image_layout().unwrapped_xy(cursor_) - xy;
+  if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
+    const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
+                       glm::length(last_press_->second - cursor_) < kDoubleClick_px;
+    last_press_ = again ? std::nullopt : std::optional(std::pair{event.time_s, cursor_});
+    if (again) {
+      session_.release();
+      session_.fly_towards(xy);
+      return;
+    }
+    const bool tilts = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+    const bool looks = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+    session_.press(looks   ? explore::MouseUse::kLook
+                   : tilts ? explore::MouseUse::kTilt
+                           : explore::MouseUse::kHold,
+                   xy, event.time_s);
+    return;
+  }
+  session_.press(explore::MouseUse::kTilt, xy, event.time_s);
+}
+
+}  // namespace vpe::window
