@@ -338,7 +338,7 @@ TEST_F(MeasurePanelTest, MarksStandAtTheirPlacesAndHiddenOnesAreFaint) {
     list->_ResetForNewFrame();
     list->PushClipRectFullScreen();
     list->PushTextureID(ImGui::GetIO().Fonts->TexID);
-    panel_->draw_marks(*list, *session_, 100, 50);
+    panel_->draw_marks(*list, *session_, {session_->view(), 100, 50});
     ImGui::Render();
     return list;
   };

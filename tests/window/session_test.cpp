@@ -382,7 +382,7 @@ TEST_F(SessionTest, AWaypointIsDraggedAndARegionDrawnOnTheMap) {
 
 TEST_F(SessionTest, TwoEyesInEveryLayout) {
   open();
-  const explore::Screen screen = window_->session().screen();
+  const explore::Screen view = window_->session().screen();
   for (const auto& [name, layout] : {std::pair{"side by side", core::StereoLayout::kSideBySide},
                                      std::pair{"over and under", core::StereoLayout::kOverUnder},
                                      std::pair{"red and cyan", core::StereoLayout::kAnaglyph}}) {
@@ -390,8 +390,12 @@ TEST_F(SessionTest, TwoEyesInEveryLayout) {
     click(std::string("##eyes=") + name);
     settle();
     ASSERT_EQ(window_->drawn()->request.stereo, layout);
+    const explore::Screen& screen = window_->session().screen();
     EXPECT_EQ(window_->image().width, screen.width * (layout == core::StereoLayout::kSideBySide ? 2 : 1));
     EXPECT_EQ(window_->image().height, screen.height * (layout == core::StereoLayout::kOverUnder ? 2 : 1));
+    // Together they fill the view, but for a last odd line.
+    EXPECT_NEAR(window_->image().width, view.width, 1);
+    EXPECT_NEAR(window_->image().height, view.height, 1);
   }
 }
 

@@ -53,8 +53,7 @@ void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
   ++changes_;
 }
 
-std::optional<mars::LonLat> Session::place_at(glm::dvec2 xy) const {
-  const core::View shown = view();
+std::optional<mars::LonLat> Session::place_at(const core::View& shown, glm::dvec2 xy) const {
   const glm::dvec3 ray = core::pixel_ray(shown, xy.x, xy.y);
   const double range_m = ground_.cast_m(shown.camera.position_m, ray);
   if (!std::isfinite(range_m)) return std::nullopt;

@@ -71,7 +71,9 @@ class Session {
   void set_mouse(const MouseChoices& choices) { mouse_ = choices; }
 
   // Returns the ground that the view shows at a position of its image, or nullopt for the sky.
-  std::optional<mars::LonLat> place_at(glm::dvec2 xy) const;
+  std::optional<mars::LonLat> place_at(glm::dvec2 xy) const { return place_at(view(), xy); }
+  // Returns likewise the ground in the image of another view, such as that of an eye.
+  std::optional<mars::LonLat> place_at(const core::View& shown, glm::dvec2 xy) const;
 
   // Returns the settings in effect. While a flight is followed they include the flight's, and the user's
   // changes since then.

@@ -99,7 +99,8 @@ std::string ExploreWindow::copy_view() {
 
 void ExploreWindow::set_recording(bool on, const fs::path& file) {
   const std::string error =
-      on ? recorder_.start(file.empty() ? new_file(setup_.folder, "log-", ".flight") : file, session_, now_s())
+      on ? recorder_.start(file.empty() ? new_file(setup_.folder, "log-", ".flight") : file, session_,
+                           chooser_.choice().stereo, now_s())
          : recorder_.stop(now_s());
   if (!error.empty()) return show_message(error, true);
   show_message((on ? "recording: " : "recorded: ") + recorder_.file().string());

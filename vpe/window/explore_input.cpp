@@ -48,7 +48,7 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kRelease: handle_button(event); break;
     case Event::Kind::kMove:
       if (session_.mouse_use() != explore::MouseUse::kNone)
-        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_, event.time_s);
+        session_.drag(image_layout().xy_of(held_eye_, cursor_), event.time_s);
       break;
     case Event::Kind::kScroll:
       if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
@@ -130,7 +130,8 @@ void ExploreWindow::follow_caught_cursor() {
       state_.help || state_.files || state_.large_map || ImGui::GetIO().WantTextInput || panel_focus_.is_on();
   if (needs_cursor || guide_.inside() != nullptr || session_.mode() == explore::MotionMode::kOrbit)
     return let_cursor_go();
-  cursor_ = {view_area_.x + view_area_.width / 2, view_area_.y + view_area_.height / 2};
+  const ViewArea area = image_layout().eye_area(0);
+  cursor_ = {area.x + area.width / 2, area.y + area.height / 2};
 }
 
 void ExploreWindow::handle_button(const Event& event) {
@@ -143,7 +144,7 @@ void ExploreWindow::handle_button(const Event& event) {
   panel_focus_.leave();
   welcome_.dismiss();
   const glm::dvec2 xy = *over;
-  held_half_ = image_layout().unwrapped_xy(cursor_) - xy;
+  held_eye_ = image_layout().eye_at(cursor_);
   if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
     const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
                        glm::length(last_press_->second - cursor_) < kDoubleClick_px;

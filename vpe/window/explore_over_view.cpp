@@ -58,7 +58,11 @@ void ExploreWindow::draw_notes() {
   const double scale = display_.scale();
   ViewArea free = view_area_;
   if (display_.has_caught_cursor()) {
-    draw_middle_mark(*ImGui::GetForegroundDrawList(), {cursor_.x, cursor_.y}, scale);
+    for (int eye = 0; eye < image_layout().eyes(); ++eye) {
+      const ViewArea area = image_layout().eye_area(eye);
+      draw_middle_mark(*ImGui::GetForegroundDrawList(), {area.x + area.width / 2, area.y + area.height / 2},
+                       scale);
+    }
     free.height -= draw_note(free, kCaught, kHintColour, scale);
   }
   if (!state_.message.empty())

@@ -56,10 +56,15 @@ std::string ExploreWindow::open_project() {
 bool ExploreWindow::handle_drawing(const Event& event) {
   if (guide_.inside() != nullptr) return false;
   const ImGuiIO& io = ImGui::GetIO();
-  const bool is_over_view =
-      !state_.large_map && !io.WantCaptureMouse && !state_.stereo && state_.image_error.empty();
-  const std::optional<glm::dvec2> xy = is_over_view ? image_layout().camera_xy(cursor_) : std::nullopt;
-  const bool is_mine = drawing_.handle(event, xy, io.WantTextInput || panel_focus_.is_on(), session_);
+  const bool is_over_view = !state_.large_map && !io.WantCaptureMouse && state_.image_error.empty();
+  const ImageLayout layout = image_layout();
+  // A vertex stays in the image of the eye in which it was taken.
+  const int eye = drawing_.sketch().held() ? held_eye_ : layout.eye_at(cursor_);
+  if (event.kind == Event::Kind::kPress) held_eye_ = eye;
+  std::optional<glm::dvec2> xy;
+  if (is_over_view && layout.image_area().holds(cursor_.x, cursor_.y)) xy = layout.xy_of(eye, cursor_);
+  const core::View view = eye_image(eye).view;
+  const bool is_mine = drawing_.handle(event, xy, io.WantTextInput || panel_focus_.is_on(), session_, view);
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
   return is_mine;
 }

@@ -15,6 +15,8 @@ namespace vpe::window {
 void ExploreWindow::request_image() {
   const explore::DrawChoice chosen = chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m},
                                                      session_.follows_flight() ? session_.player() : nullptr);
+  const glm::ivec2 size = image_layout().eye_size();
+  session_.resize(size.x, size.y);
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
   const std::string state = std::string(core::to_string(chosen.drawn_by)) +
@@ -28,7 +30,7 @@ void ExploreWindow::request_image() {
   ImageRequest request;
   request.number = ++requested_;
   request.stereo = chosen.stereo;
-  request.eye_base_m = chosen.eye_base_m > 0 ? chosen.eye_base_m : core::base_for_height_m(session_.height_m());
+  request.eye_base_m = eye_base_m();
   request.draw.view = next->view;
   request.draw.settings = session_.settings().values();
   request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
@@ -135,36 +137,19 @@ void ExploreWindow::leave_overlook() {
   if (const std::string error = recorder_.leave_overlook(now_s()); !error.empty()) show_message(error, true);
 }
 
-namespace {
-
-double images_across(std::optional<core::StereoLayout> stereo) {
-  return stereo == core::StereoLayout::kSideBySide ? 2 : 1;
-}
-double images_down(std::optional<core::StereoLayout> stereo) {
-  return stereo == core::StereoLayout::kOverUnder ? 2 : 1;
+// Returns the distance of the eyes, metres.
+double ExploreWindow::eye_base_m() const {
+  const double base_m = chooser_.choice().eye_base_m;
+  return base_m > 0 ? base_m : core::base_for_height_m(session_.height_m());
 }
 
-}  // namespace
-
-ViewArea ImageLayout::image_area() const {
-  const double width = view.width * images_across(stereo);
-  const double height = view.height * images_down(stereo);
-  if (width == view.width && height == view.height) return view;
-  const double scale = std::min(view.width / width, view.height / height);
-  return {view.x + (view.width - width * scale) / 2, view.y + (view.height - height * scale) / 2, width * scale,
-          height * scale};
-}
-
-std::optional<glm::dvec2> ImageLayout::camera_xy(glm::dvec2 cursor) const {
-  if (!image_area().holds(cursor.x, cursor.y)) return std::nullopt;
-  const glm::dvec2 xy = unwrapped_xy(cursor);
-  return glm::dvec2{std::fmod(xy.x, view.width), std::fmod(xy.y, view.height)};
-}
-
-glm::dvec2 ImageLayout::unwrapped_xy(glm::dvec2 cursor) const {
-  const ViewArea area = image_area();
-  return {(cursor.x - area.x) * images_across(stereo) * view.width / area.width,
-          (cursor.y - area.y) * images_down(stereo) * view.height / area.height};
+// Returns the view of an eye, and where its image is. One image, and one of red and cyan, are of the middle.
+EyeImage ExploreWindow::eye_image(int eye) const {
+  const ImageLayout layout = image_layout();
+  const ViewArea area = layout.eye_area(eye);
+  if (layout.eyes() == 1) return {session_.view(), area.x, area.y};
+  const double aside_m = (eye == 0 ? -0.5 : 0.5) * eye_base_m();
+  return {core::eye_view(session_.view(), aside_m, std::nullopt), area.x, area.y};
 }
 
 // Finds the ground under the cursor. Over panels there is none.
@@ -172,7 +157,9 @@ void ExploreWindow::find_cursor() {
   measure_.update();
   under_cursor_.reset();
   if (state_.large_map || guide_.inside() != nullptr || ImGui::GetIO().WantCaptureMouse) return;
-  if (const auto xy = image_layout().camera_xy(cursor_)) under_cursor_ = session_.place_at(*xy);
+  const ImageLayout layout = image_layout();
+  if (const auto xy = layout.camera_xy(cursor_))
+    under_cursor_ = session_.place_at(eye_image(layout.eye_at(cursor_)).view, *xy);
 }
 
 void ExploreWindow::draw_view() {
@@ -186,14 +173,20 @@ void ExploreWindow::draw_view() {
   const ViewArea area =
       drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
   list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
-  if (chooser_.choice().stereo) return;
-  list.PushClipRect(at(view_area_.x, view_area_.y),
-                    at(view_area_.x + view_area_.width, view_area_.y + view_area_.height), true);
-  if (!measure_.points().empty()) measure_.draw_marks(list, session_, view_area_.x, view_area_.y);
-  draw_flight_marks(list, session_, flight_.selected(), view_area_.x, view_area_.y);
-  drawing_.draw_marks(list, session_, under_cursor_, view_area_.x, view_area_.y);
-  guide_.draw_marks(list, session_, view_area_.x, view_area_.y);
-  list.PopClipRect();
+  for (int n = 0; n < image_layout().eyes(); ++n) {
+    const EyeImage eye = eye_image(n);
+    const ViewArea clip = image_layout().eye_area(n);
+    list.PushClipRect(at(clip.x, clip.y), at(clip.x + clip.width, clip.y + clip.height), true);
+    draw_marks(list, eye);
+    list.PopClipRect();
+  }
+}
+
+void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {
+  if (!measure_.points().empty()) measure_.draw_marks(list, session_, eye);
+  draw_flight_marks(list, session_, flight_.selected(), eye);
+  drawing_.draw_marks(list, session_, under_cursor_, eye);
+  guide_.draw_marks(list, session_, eye);
 }
 
 }  // namespace vpe::window

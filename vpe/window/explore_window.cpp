@@ -248,7 +248,8 @@ void ExploreWindow::lay_out() {
   display_.framebuffer(width, height);
   layout_ = layout_of({width, height, display_.scale(), state_.panels, state_.side_px, state_.side_is_open});
   view_area_ = layout_.view;
-  session_.resize(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
+  const glm::ivec2 size = image_layout().eye_size();
+  session_.resize(size.x, size.y);
 }
 
 void ExploreWindow::clear_message() {

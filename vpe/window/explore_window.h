@@ -28,6 +28,7 @@
 #include "vpe/window/devices.h"
 #include "vpe/window/explore_layout.h"
 #include "vpe/window/hotspot_guide.h"
+#include "vpe/window/image_layout.h"
 #include "vpe/window/panels/appearance_panel.h"
 #include "vpe/window/panels/drawing_panel.h"
 #include "vpe/window/panels/file_panel.h"
@@ -128,22 +129,6 @@ struct WindowState {
   std::string image_error;  // why there is no image for the present settings; empty: there is one
 };
 
-// Converts positions between the window and the image of one eye. Pairs side by side or over and under have
-// another shape than the view, and are shown as a whole in its middle.
-struct ImageLayout {
-  ViewArea view;
-  std::optional<core::StereoLayout> stereo;
-
-  // Returns where the whole image is.
-  ViewArea image_area() const;
-  // Converts a position of the window to a position of the image of the eye that is there; returns nullopt
-  // beside the image.
-  std::optional<glm::dvec2> camera_xy(glm::dvec2 cursor) const;
-  // Converts likewise, but positions of the second eye's image and beside the image continue those of the
-  // first.
-  glm::dvec2 unwrapped_xy(glm::dvec2 cursor) const;
-};
-
 // Runs the window. For the main thread.
 //
 // Typical usage:
@@ -175,6 +160,7 @@ class ExploreWindow {
   // Returns the project as it is now.
   explore::Project project() const;
   DrawingPanel& drawing() { return drawing_; }
+  const MeasurePanel& measure() const { return measure_; }
   // Runs one iteration of the event loop: events, devices, panels, an image if one is due. Waits for events for
   // at most `wait_s` seconds if there is nothing to do. Returns false if the window was closed.
   bool step(double wait_s);
@@ -237,10 +223,13 @@ class ExploreWindow {
   void draw_frame();
   void find_cursor();
   ImageLayout image_layout() const { return {view_area_, chooser_.choice().stereo}; }
+  double eye_base_m() const;
+  EyeImage eye_image(int eye) const;
   bool maps_rest() const;
   bool step_overlook(const DeviceReading& input, double dt_s);
   void leave_overlook();
   void draw_view();
+  void draw_marks(ImDrawList& list, const EyeImage& eye);
   void draw_side();
   void draw_tabs();
   void draw_side_handle();
@@ -333,7 +322,7 @@ class ExploreWindow {
   ViewArea view_area_;  // layout_.view
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
-  glm::dvec2 held_half_{0, 0};  // offset of the image of the eye in which the button was pressed
+  int held_eye_ = 0;                                         // in whose image the button was pressed
   Devices devices_;
   explore::ViewHistory history_;
   SessionRecorder recorder_;

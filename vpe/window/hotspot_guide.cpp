@@ -76,8 +76,8 @@ std::string HotspotGuide::enter(const explore::Session& session) {
   return {};
 }
 
-void HotspotGuide::draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) const {
-  const core::View view = session.view();
+void HotspotGuide::draw_marks(ImDrawList& list, const explore::Session& session, const EyeImage& eye) const {
+  const core::View& view = eye.view;
   const float size = ImGui::GetFontSize() * 0.45F;
   for (std::size_t n = 0; n < positions_m_.size(); ++n) {
     const glm::dvec3 path = positions_m_[n] - view.camera.position_m;
@@ -87,7 +87,7 @@ void HotspotGuide::draw_marks(ImDrawList& list, const explore::Session& session,
     if (at.behind || at.xy.x < 0 || at.xy.y < 0 || at.xy.x > view.width || at.xy.y > view.height) continue;
     if (session.ground().cast_m(view.camera.position_m, path / distance_m) < distance_m * (1.0 - kHiddenShare))
       continue;
-    const ImVec2 p{static_cast<float>(x0 + at.xy.x), static_cast<float>(y0 + at.xy.y)};
+    const ImVec2 p{static_cast<float>(eye.x0 + at.xy.x), static_cast<float>(eye.y0 + at.xy.y)};
     const ImVec2 corners[4] = {{p.x, p.y - size}, {p.x + size, p.y}, {p.x, p.y + size}, {p.x - size, p.y}};
     list.AddConvexPolyFilled(corners, 4, kMark);
     list.AddPolyline(corners, 4, kDark, ImDrawFlags_Closed, 1.5F);

@@ -1,7 +1,7 @@
 // Panorama hotspots in the window: which one is near, opening its panorama ahead, entering and leaving it.
 //
-// Hotspots are drawn as marks over the image of a single camera. They are not objects of the scene: stereo
-// pairs, films and still images do not show them.
+// Hotspots are drawn as marks over the images of the window. They are not objects of the scene: films and still images
+// do not show them.
 #pragma once
 
 #include <imgui.h>
@@ -14,6 +14,7 @@
 
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/marks/ground_view.h"
 #include "vpe/window/overlook_view.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
@@ -49,8 +50,8 @@ class HotspotGuide {
   const glm::dvec3& inside_camera_m() const { return positions_m_[inside_index_]; }
   const explore::Hotspot* inside_hotspot() const { return inside_ ? &hotspots_[inside_index_] : nullptr; }
 
-  // Draws marks and names over a view with its upper left corner at (x0, y0), except those hidden by terrain.
-  void draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) const;
+  // Draws marks and names over the image of an eye, except those hidden by terrain.
+  void draw_marks(ImDrawList& list, const explore::Session& session, const EyeImage& eye) const;
 
  private:
   void compute_positions(const explore::Session& session);

@@ -5,8 +5,18 @@
 #include <glm/geometric.hpp>
 
 #include "vpe/base/number.h"
+#include "vpe/window/image_layout.h"
 
 namespace vpe::window {
+
+namespace {
+
+scripts::ImageSize whole_size(const explore::Session& session, std::optional<core::StereoLayout> stereo) {
+  const glm::ivec2 counts = ImageLayout{{}, stereo}.counts();
+  return {session.screen().width * counts.x, session.screen().height * counts.y};
+}
+
+}  // namespace
 
 template <class Write>
 std::string SessionRecorder::write(const Write& write) {
@@ -21,12 +31,13 @@ std::string SessionRecorder::write(const Write& write) {
 }
 
 std::string SessionRecorder::start(const std::filesystem::path& file, const explore::Session& session,
-                                   double now_s) {
+                                   std::optional<core::StereoLayout> stereo, double now_s) {
   try {
     scripts::FlightView view;
     view.fov_deg = session.screen().fov_deg;
-    view.width = session.screen().width;
-    view.height = session.screen().height;
+    const scripts::ImageSize size = whole_size(session, stereo);
+    view.width = size.width;
+    view.height = size.height;
     log_ = std::make_unique<explore::SessionLog>(file, view, session.ground().radius_m);
     file_ = file;
     begun_s_ = now_s;
@@ -62,10 +73,9 @@ std::string SessionRecorder::record_image(ImageRequest& request, const ImageRequ
                                           const explore::Session& session, double now_s) {
   return write([&] {
     const double time_s = now_s - begun_s_;
-    const explore::Screen& screen = session.screen();
     scripts::ViewState view;
-    view.fov_deg = screen.fov_deg;
-    view.size = scripts::ImageSize{screen.width, screen.height};
+    view.fov_deg = session.screen().fov_deg;
+    view.size = whole_size(session, request.stereo);
     view.backend = core::drawn_by(drawn.backend);
     view.eyes = scripts::Eyes{request.stereo};
     if (request.stereo) view.eye_base_m = request.eye_base_m;

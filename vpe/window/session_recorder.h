@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,13 +20,14 @@ namespace vpe::window {
 // `now_s` is the time of one clock. For one thread at a time.
 //
 // Typical usage:
-//   if (const std::string error = recorder.start(file, session, now_s); !error.empty()) show(error);
+//   if (const std::string error = recorder.start(file, session, stereo, now_s); !error.empty()) show(error);
 //   (void)recorder.record_image(request, as_drawn(request), session, now_s);   // for each image that is requested
 //   (void)recorder.stop(now_s);
 class SessionRecorder {
  public:
+  // `stereo` says which eyes are shown. The size of a log is that of the images of both eyes together, as in films.
   [[nodiscard]] std::string start(const std::filesystem::path& file, const explore::Session& session,
-                                  double now_s);
+                                  std::optional<core::StereoLayout> stereo, double now_s);
   [[nodiscard]] std::string stop(double now_s);
   bool is_recording() const { return log_ != nullptr; }
   // Returns the file that is or was written last.

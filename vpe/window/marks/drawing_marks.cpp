@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "vpe/explore/measure/map_line.h"
-#include "vpe/window/marks/ground_view.h"
 
 namespace vpe::window {
 
@@ -51,8 +50,12 @@ std::vector<glm::dvec3> ground_line(std::span<const mars::LonLat> outline, const
 
 class DrawingMarker : public GroundView {
  public:
-  DrawingMarker(ImDrawList& list, const explore::Session& session, double x0, double y0)
-      : GroundView(session), list_(list), x0_(x0), y0_(y0), thick_(std::max(1.5F, ImGui::GetFontSize() / 8)) {}
+  DrawingMarker(ImDrawList& list, const explore::Session& session, const EyeImage& eye)
+      : GroundView(session, eye.view),
+        list_(list),
+        x0_(eye.x0),
+        y0_(eye.y0),
+        thick_(std::max(1.5F, ImGui::GetFontSize() / 8)) {}
 
   void line(std::span<const glm::dvec3> points_m, base::Rgb colour) {
     Run run;
@@ -154,17 +157,17 @@ const std::vector<glm::dvec3>& DrawingMarks::line_of(const explore::Drawings::Sh
   if (found != lines_.end()) return found->second;
   const std::vector<mars::LonLat> outline =
       outline_of(drawing->vertices, drawing->kind == DrawingKind::kPolygon);
-  return lines_.emplace(drawing, ground_line(outline, GroundView(session))).first->second;
+  return lines_.emplace(drawing, ground_line(outline, GroundView(session, session.view()))).first->second;
 }
 
-void DrawingMarks::draw(ImDrawList& list, const explore::Session& session, const DrawingScene& scene, double x0,
-                        double y0) {
+void DrawingMarks::draw(ImDrawList& list, const explore::Session& session, const DrawingScene& scene,
+                        const EyeImage& eye) {
   const double exaggeration = session.settings().values().exaggeration;
   if (exaggeration != exaggeration_) lines_.clear();
   exaggeration_ = exaggeration;
   // Drawings that were edited or deleted leave lines behind.
   if (lines_.size() > 2 * scene.drawings.size() + 50) lines_.clear();
-  DrawingMarker marker(list, session, x0, y0);
+  DrawingMarker marker(list, session, eye);
   marker.share_casts(scene.drawings.size() + 1);
   const float size = ImGui::GetFontSize() * 0.22F;
   for (const explore::Drawings::Shared& drawing : scene.drawings) {

@@ -11,6 +11,7 @@
 #include "vpe/explore/drawing/drawings.h"
 #include "vpe/explore/measure/map_view.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/marks/ground_view.h"
 
 namespace vpe::window {
 
@@ -34,9 +35,9 @@ struct DrawingMarkLimits {
 // Draws drawings, and keeps the points of their lines on the ground. For the window's thread.
 class DrawingMarks {
  public:
-  // Draws over a view with its upper left corner at (x0, y0) of the list, on the ground as drawn. Hidden parts
-  // are faint, hidden vertices hollow. Casts rays, which takes one or two milliseconds.
-  void draw(ImDrawList& list, const explore::Session& session, const DrawingScene& scene, double x0, double y0);
+  // Draws over the image of an eye, on the ground as drawn. Hidden parts are faint, hidden vertices hollow. Casts
+  // rays, which takes one or two milliseconds.
+  void draw(ImDrawList& list, const explore::Session& session, const DrawingScene& scene, const EyeImage& eye);
 
   // Forgets the kept points, as when the ground changes.
   void clear() { lines_.clear(); }

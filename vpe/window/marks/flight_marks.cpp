@@ -27,34 +27,32 @@ struct Shown {
 // Projects points of the world, as long as they are in front of the camera.
 class Projector {
  public:
-  Projector(const explore::Session& session, double x0, double y0)
-      : view_(session.view()), ground_(session.ground()), x0_(x0), y0_(y0) {}
+  Projector(const explore::Session& session, const EyeImage& eye) : eye_(eye), ground_(session.ground()) {}
 
   std::optional<Shown> operator()(const glm::dvec3& point_m) const {
-    const core::Projected p = core::project(view_, point_m);
+    const core::Projected p = core::project(eye_.view, point_m);
     if (p.behind) return std::nullopt;
-    const glm::dvec3 path = point_m - view_.camera.position_m;
+    const glm::dvec3& camera_m = eye_.view.camera.position_m;
+    const glm::dvec3 path = point_m - camera_m;
     const double range_m = glm::length(path);
     const bool is_near = range_m < 1e-3;
-    const double ground_m = is_near ? 0 : ground_.cast_m(view_.camera.position_m, path / range_m);
-    return Shown{vpe::window::at(x0_ + p.xy.x, y0_ + p.xy.y), !is_near && ground_m < range_m * 0.999};
+    const double ground_m = is_near ? 0 : ground_.cast_m(camera_m, path / range_m);
+    return Shown{vpe::window::at(eye_.x0 + p.xy.x, eye_.y0 + p.xy.y), !is_near && ground_m < range_m * 0.999};
   }
 
  private:
-  core::View view_;
+  const EyeImage& eye_;
   const explore::TerrainQuery& ground_;
-  double x0_;
-  double y0_;
 };
 
 }  // namespace
 
 void draw_flight_marks(ImDrawList& list, explore::Session& session, std::optional<std::size_t> selected,
-                       double x0, double y0) {
+                       const EyeImage& eye) {
   const explore::FlightPlayer* player = session.player();
   const explore::FlightEditor* editor = session.flights().editor();
   if (player == nullptr || editor == nullptr || session.follows_flight()) return;
-  const Projector projected(session, x0, y0);
+  const Projector projected(session, eye);
   std::optional<Shown> before;
   for (int n = 0; n <= kCourseParts; ++n) {
     const double time_s = player->duration_s() * n / kCourseParts;

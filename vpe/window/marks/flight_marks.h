@@ -6,13 +6,13 @@
 #include <optional>
 
 #include "vpe/explore/session.h"
+#include "vpe/window/marks/ground_view.h"
 
 namespace vpe::window {
 
-// Draws the course of the session's flight over a view with its upper left corner at (x0, y0). What the ground hides
-// is faint. Poses are numbered from 1; `selected` is marked. Draws nothing while the flight is followed, since the
+// Draws the course of the session's flight over the image of an eye. What the ground hides is faint. Poses are numbered from 1; `selected` is marked. Draws nothing while the flight is followed, since the
 // camera is on it. Casts at most some 250 rays.
 void draw_flight_marks(ImDrawList& list, explore::Session& session, std::optional<std::size_t> selected,
-                       double x0, double y0);
+                       const EyeImage& eye);
 
 }  // namespace vpe::window

@@ -9,10 +9,17 @@
 
 namespace vpe::window {
 
-// Refers to a session, whose view it copies.
+// Describes the image of an eye in the window: its view, and where its upper left corner is.
+struct EyeImage {
+  core::View view;
+  double x0 = 0;  // framebuffer pixels
+  double y0 = 0;
+};
+
+// Refers to a session, and copies the view.
 class GroundView {
  public:
-  explicit GroundView(const explore::Session& session) : session_(session), view_(session.view()) {}
+  GroundView(const explore::Session& session, const core::View& view) : session_(session), view_(view) {}
 
   const core::View& view() const { return view_; }
   // Returns the point of the ground as drawn.

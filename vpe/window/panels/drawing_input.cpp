@@ -42,15 +42,15 @@ void DrawingPanel::undo(bool again) {
 }
 
 bool DrawingPanel::handle(const Event& event, std::optional<glm::dvec2> xy, bool is_typing,
-                          const explore::Session& session) {
+                          const explore::Session& session, const core::View& view) {
   switch (event.kind) {
     case Event::Kind::kKeyPress:
     case Event::Kind::kKeyRepeat: return !is_typing && handle_key(event, session);
-    case Event::Kind::kPress: return xy && handle_press(event, *xy, session);
+    case Event::Kind::kPress: return xy && handle_press(event, *xy, session, view);
     case Event::Kind::kMove:
       if (pressed_ && (!xy || glm::length(*xy - *pressed_) > kClick_px)) pressed_.reset();
       if (!sketch_.held() || !xy) return false;
-      if (const auto place = session.place_at(*xy)) report(sketch_.drag(*place));
+      if (const auto place = session.place_at(view, *xy)) report(sketch_.drag(*place));
       return true;
     case Event::Kind::kRelease: {
       if (event.code != GLFW_MOUSE_BUTTON_LEFT) return false;
@@ -58,7 +58,7 @@ bool DrawingPanel::handle(const Event& event, std::optional<glm::dvec2> xy, bool
       sketch_.release();
       if (!std::exchange(pressed_, std::nullopt) || !xy) return held;
       last_click_ = {event.time_s, *xy};
-      if (const auto place = session.place_at(*xy))
+      if (const auto place = session.place_at(view, *xy))
         place_vertex(*place);
       else
         report("there is no ground under the cursor");
@@ -68,7 +68,8 @@ bool DrawingPanel::handle(const Event& event, std::optional<glm::dvec2> xy, bool
   }
 }
 
-bool DrawingPanel::handle_press(const Event& event, glm::dvec2 xy, const explore::Session& session) {
+bool DrawingPanel::handle_press(const Event& event, glm::dvec2 xy, const explore::Session& session,
+                                const core::View& view) {
   if (event.code != GLFW_MOUSE_BUTTON_LEFT || (event.modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL)) != 0)
     return false;
   if (sketch_.tool()) {
@@ -83,7 +84,7 @@ bool DrawingPanel::handle_press(const Event& event, glm::dvec2 xy, const explore
     pressed_ = xy;
   }
   if (!is_shown() || !sketch_.unfinished().empty()) return false;
-  const GroundView ground(session);
+  const GroundView ground(session, view);
   const auto position = [&](mars::LonLat place) -> std::optional<glm::dvec2> {
     const glm::dvec3 point_m = ground.on_ground(mars::direction(place));
     const core::Projected seen = ground.seen(point_m);
@@ -168,9 +169,9 @@ DrawingScene DrawingPanel::scene() const {
 }
 
 void DrawingPanel::draw_marks(ImDrawList& list, const explore::Session& session,
-                              std::optional<mars::LonLat> cursor, double x0, double y0) {
+                              std::optional<mars::LonLat> cursor, const EyeImage& eye) {
   cursor_ = cursor;
-  marks_.draw(list, session, scene(), x0, y0);
+  marks_.draw(list, session, scene(), eye);
 }
 
 void DrawingPanel::draw_on_map(ImDrawList& list, const explore::MapView& map, double x0, double y0) {

@@ -34,9 +34,9 @@ struct DrawingActions {
 // on another one.
 //
 // Typical usage:
-//   if (panel.handle(event, xy, session)) return;     // for each event
+//   if (panel.handle(event, xy, typing, session, eye_view)) return;  // for each event
 //   panel.draw(widgets);                              // inside its tab
-//   panel.draw_marks(list, session, cursor, x0, y0);  // over the view
+//   panel.draw_marks(list, session, cursor, eye);     // over the view
 //   show(panel.take_actions());
 class DrawingPanel : public MapOverlay {
  public:
@@ -45,21 +45,21 @@ class DrawingPanel : public MapOverlay {
   DrawingPanel(explore::FlightController& flights, std::shared_ptr<const paging::Surface> surface,
                std::filesystem::path folder, std::function<void()> notify);
 
-  // Handles an event. `xy` is the cursor's position in the view, or nullopt over anything else. While
-  // `is_typing`, keys belong to a text field. Returns true if nobody else may handle it.
+  // Handles an event. `xy` is the cursor's position in the image of `view`, which is that of the session or of one of
+  // two eyes, or nullopt over anything else. While `is_typing`, keys belong to a text field. Returns true if nobody
+  // else may handle it.
   //
   // With a tool: a click places a vertex, a double click or Enter ends, Backspace takes the last vertex back,
   // Esc cancels; a drag moves the ground as ever. While the panel is shown, a drag of a vertex moves it. Ctrl+Z
   // undoes the last edit of drawings and flight, Ctrl+Shift+Z or Ctrl+Y repeats it, Ctrl+S saves the project.
-  bool handle(const Event& event, std::optional<glm::dvec2> xy, bool is_typing,
-              const explore::Session& session);
+  bool handle(const Event& event, std::optional<glm::dvec2> xy, bool is_typing, const explore::Session& session,
+              const core::View& view);
 
   // Draws the panel inside its tab.
   void draw(Widgets& widgets);
-  // Draws the drawings over a view with its upper left corner at (x0, y0). `cursor` is the place under the
-  // cursor.
+  // Draws the drawings over the image of an eye. `cursor` is the place under the cursor.
   void draw_marks(ImDrawList& list, const explore::Session& session, std::optional<mars::LonLat> cursor,
-                  double x0, double y0);
+                  const EyeImage& eye);
 
   void draw_on_map(ImDrawList& list, const explore::MapView& map, double x0, double y0) override;
   bool press_on_map(const explore::MapView& map, glm::dvec2 xy) override;
@@ -89,7 +89,7 @@ class DrawingPanel : public MapOverlay {
 
  private:
   bool handle_key(const Event& event, const explore::Session& session);
-  bool handle_press(const Event& event, glm::dvec2 xy, const explore::Session& session);
+  bool handle_press(const Event& event, glm::dvec2 xy, const explore::Session& session, const core::View& view);
   bool is_shown() const;
   void place_vertex(mars::LonLat place);
   void report(const std::string& problem);

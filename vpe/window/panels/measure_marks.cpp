@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "vpe/window/marks/ground_view.h"
 #include "vpe/window/panels/profile_plot_view.h"
 
 namespace vpe::window {
@@ -19,12 +18,12 @@ constexpr ImU32 kFaintDark = IM_COL32(0, 0, 0, 60);
 
 class Marker : private GroundView {
  public:
-  Marker(ImDrawList& list, const explore::Session& session, double x0, double y0)
-      : GroundView(session),
+  Marker(ImDrawList& list, const explore::Session& session, const EyeImage& eye)
+      : GroundView(session, eye.view),
         list_(list),
         session_(session),
-        x0_(x0),
-        y0_(y0),
+        x0_(eye.x0),
+        y0_(eye.y0),
         thick_(std::max(1.5F, ImGui::GetFontSize() / 8)) {}
 
   ImVec2 at(glm::dvec2 xy) const { return {static_cast<float>(x0_ + xy.x), static_cast<float>(y0_ + xy.y)}; }
@@ -135,9 +134,9 @@ void Marker::cross(mars::LonLat place) const {
 
 }  // namespace
 
-void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks, double x0,
-                        double y0) {
-  const Marker marker(list, session, x0, y0);
+void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks,
+                        const EyeImage& eye) {
+  const Marker marker(list, session, eye);
   marker.clip();
   if (marks.profile != nullptr) marker.line(*marks.profile);
   for (std::size_t n = 0; n < marks.points.size(); ++n) marker.point(marks.points[n], point_name(n));

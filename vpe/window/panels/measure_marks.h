@@ -8,6 +8,7 @@
 
 #include "vpe/explore/measure/profile.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/marks/ground_view.h"
 
 namespace vpe::window {
 
@@ -22,9 +23,8 @@ struct MarkLimits {
   static constexpr int kCasts = 60;        // that find sections hidden by nearer ground
 };
 
-// Draws marks over a view with its upper left corner at (x0, y0) of the list, on the ground as drawn, with its
-// exaggeration. Sections of the path that nearer ground hides are faint, hidden points are hollow.
-void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks, double x0,
-                        double y0);
+// Draws marks over the image of an eye, on the ground as drawn, with its exaggeration. Sections of the path that nearer ground hides are faint, hidden points are hollow.
+void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks,
+                        const EyeImage& eye);
 
 }  // namespace vpe::window

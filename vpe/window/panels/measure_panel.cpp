@@ -277,10 +277,9 @@ void MeasurePanel::save(MeasureActions& actions) const {
   }
 }
 
-void MeasurePanel::draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) {
+void MeasurePanel::draw_marks(ImDrawList& list, const explore::Session& session, const EyeImage& eye) {
   take();
-  draw_measure_marks(list, session, {places_, measured_ ? measured_->profile.get() : nullptr, marked()}, x0,
-                     y0);
+  draw_measure_marks(list, session, {places_, measured_ ? measured_->profile.get() : nullptr, marked()}, eye);
 }
 
 }  // namespace vpe::window

@@ -10,6 +10,7 @@
 
 #include "vpe/explore/measure/read_out.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/marks/ground_view.h"
 #include "vpe/window/ui/widgets.h"
 #include "vpe/window/workers/measurer.h"
 
@@ -27,7 +28,7 @@ struct MeasureActions {
 // Typical usage:
 //   panel.add(place);                                                 // a point of the path
 //   const MeasureActions actions = panel.draw(session, under_cursor, widgets);
-//   panel.draw_marks(list, session, x0, y0);                          // over the view
+//   panel.draw_marks(list, session, eye);                             // over the view
 class MeasurePanel {
  public:
   // Calls `notify` on the measuring thread when a measurement is finished and the window should draw again.
@@ -62,9 +63,8 @@ class MeasurePanel {
   // Returns the measurement of the present points, or null if it is not finished.
   const Measured* measured() const { return measured_ ? &*measured_ : nullptr; }
 
-  // Draws points, path and marked place over a view with its upper left corner at (x0, y0). Casts rays, which
-  // takes one or two milliseconds.
-  void draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0);
+  // Draws points, path and marked place over the image of an eye. Casts rays, which takes one or two milliseconds.
+  void draw_marks(ImDrawList& list, const explore::Session& session, const EyeImage& eye);
 
  private:
   void request();
