@@ -5,6 +5,8 @@
 #include <string>
 
 #include "tests/window/explore_window_fixture.h"
+#include "vpe/window/marks/pivot_mark.h"
+#include "vpe/window/ui/hand_cursor.h"
 
 namespace vpe::window {
 namespace {
@@ -20,6 +22,15 @@ class HandsTest : public ExploreWindowTest {
   void move_by(int dx, int dy) {
     robot_->move_by(dx, dy);
     iterate(2);
+  }
+  // Returns the pixels of the window.
+  core::RgbImage captured() {
+    core::RgbImage image;
+    window_->capture(&image);
+    for (int n = 0; n < 100 && image.pixels.empty(); ++n) key("Shift_L");
+    window_->capture(nullptr);
+    EXPECT_FALSE(image.pixels.empty());
+    return image;
   }
   void open_in(explore::MotionMode mode) {
     open();
@@ -127,25 +138,125 @@ TEST_F(HandsTest, TheWheelSetsTheSpeedWhileTheCursorIsCaught) {
 TEST_F(HandsTest, AWayOutOfTheCaughtCursorIsTold) {
   open_in(explore::MotionMode::kFly);
   key("h");
-  for (int n = 0; n < 1000 && !window_->state().message.empty(); ++n) window_->step(0.05);
   settle();
   const auto lower_edge = [&] {
-    core::RgbImage image;
-    window_->capture(&image);
-    for (int n = 0; n < 100 && image.pixels.empty(); ++n) {
-      key("Shift_L");
-    }
+    const core::RgbImage image = captured();
     const auto row = static_cast<std::ptrdiff_t>(image.width) * (image.height - 18);
     return std::vector<base::Rgb>(image.pixels.begin() + row, image.pixels.begin() + row + image.width);
   };
   const std::vector<base::Rgb> free = lower_edge();
+  const mars::Pose before = window_->session().pose();
   key("x");
   ASSERT_TRUE(is_caught());
   settle();
+  EXPECT_EQ(window_->session().pose().pitch_deg, before.pitch_deg) << "to catch the cursor turns nothing";
+  EXPECT_EQ(window_->session().pose().yaw_deg, before.yaw_deg);
   EXPECT_NE(lower_edge(), free);
   key("Escape");
   settle();
   EXPECT_EQ(lower_edge(), free);
+}
+
+// Returns a cursor's image as the X server has it.
+std::vector<std::uint32_t> screen_pixels(const CursorImage& image) {
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t n = 0; n < image.rgba.size(); n += 4) {
+    const std::uint32_t alpha = image.rgba[n + 3];
+    const std::uint32_t grey = alpha == 0 ? 0 : image.rgba[n];
+    pixels.push_back(alpha << 24U | grey << 16U | grey << 8U | grey);
+  }
+  return pixels;
+}
+
+TEST(HandCursorTest, IsAClosedOutlineOfItsSize) {
+  for (const int factor : {1, 2, 4}) {
+    const CursorImage image = closed_hand(factor);
+    EXPECT_EQ(image.side_px, 16 * factor);
+    ASSERT_EQ(image.rgba.size(), static_cast<std::size_t>(4 * image.side_px * image.side_px));
+    const auto pixel = [&](int x, int y) {
+      return std::pair(image.rgba[static_cast<std::size_t>(4 * (y * image.side_px + x))],
+                       image.rgba[static_cast<std::size_t>(4 * (y * image.side_px + x) + 3)]);
+    };
+    for (int y = 0; y < image.side_px; ++y) {
+      for (int x = 1; x < image.side_px; ++x) {
+        // White never borders on what is behind the cursor.
+        const auto [left, left_alpha] = pixel(x - 1, y);
+        const auto [right, right_alpha] = pixel(x, y);
+        EXPECT_FALSE(left == 255 && right_alpha == 0) << x << " " << y;
+        EXPECT_FALSE(right == 255 && left_alpha == 0) << x << " " << y;
+      }
+    }
+    EXPECT_EQ(pixel(image.hot_px, image.hot_px).second, 255);
+  }
+}
+
+TEST_F(HandsTest, TheHandIsClosedWhileItHoldsTheGround) {
+  open();
+  window_->session().put({20, 10, 400'000, 0, -90, 0});
+  move(700, 250);
+  settle();
+  const std::vector<std::uint32_t> arrow = robot_->cursor();
+  const std::vector<std::uint32_t> hand = screen_pixels(closed_hand(1));
+  EXPECT_NE(arrow, hand);
+  robot_->press();
+  iterate(3);
+  EXPECT_EQ(robot_->cursor(), hand);
+  move(720, 260);
+  EXPECT_EQ(robot_->cursor(), hand);
+  robot_->release();
+  settle();
+  EXPECT_EQ(robot_->cursor(), arrow);
+  robot_->press(3);  // tilts: a ring, no hand
+  iterate(3);
+  EXPECT_EQ(robot_->cursor(), arrow);
+  robot_->release(3);
+  settle();
+}
+
+TEST_F(HandsTest, ARingMarksThePivotOfATilt) {
+  open();
+  window_->session().put({20, 10, 400'000, 0, -50, 0});
+  settle();
+  key("h");
+  settle();
+  const explore::Screen screen = window_->session().screen();
+  ASSERT_EQ(screen.width, 960);
+  const auto white_in = [](const core::RgbImage& image, double x, double y, int half) {
+    int count = 0;
+    for (int row = static_cast<int>(y) - half; row <= static_cast<int>(y) + half; ++row)
+      for (int column = static_cast<int>(x) - half; column <= static_cast<int>(x) + half; ++column) {
+        const base::Rgb p = image.pixels.at(static_cast<std::size_t>(row * image.width + column));
+        count += std::min({p.r, p.g, p.b}) > 215 ? 1 : 0;
+      }
+    return count;
+  };
+  const double x = screen.width / 2.0;
+  const double y = screen.height / 2.0;
+  const core::RgbImage before = captured();
+  move(600, 400);
+  robot_->press(3);
+  iterate(2);
+  ASSERT_EQ(window_->session().mouse_use(), explore::MouseUse::kTilt);
+  for (int n = 1; n <= 3; ++n) move(600 + 10 * n, 400 - 5 * n);
+  ASSERT_TRUE(window_->session().held_m());
+  const glm::dvec3 pivot_m = *window_->session().held_m();
+  const core::View view = window_->session().view();
+  const glm::dvec2 middle = core::project(view, pivot_m).xy;
+  EXPECT_NEAR(middle.x, x, 0.5);
+  EXPECT_NEAR(middle.y, y, 0.5);
+  const core::RgbImage during = captured();
+  EXPECT_GT(white_in(during, x, y, 2), 4) << "the dot";
+  // The ring's northern and eastern points.
+  const mars::LocalFrame frame = mars::local_frame(mars::lon_lat(pivot_m));
+  const double radius_m = PivotMarkLimits::kRadius * glm::length(pivot_m - view.camera.position_m);
+  for (const glm::dvec3& aside : {frame.north, frame.east, -frame.north, -frame.east}) {
+    const glm::dvec2 p = core::project(view, pivot_m + radius_m * aside).xy;
+    EXPECT_GT(white_in(during, p.x, p.y, 2), 2) << p.x << " " << p.y;
+    EXPECT_EQ(white_in(before, p.x, p.y, 2), 0) << p.x << " " << p.y;
+  }
+  robot_->release(3);
+  settle();
+  EXPECT_EQ(white_in(captured(), x, y, 2), 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 // After the system's: X names many things.
 #include <X11/Xlib.h>
 #include <X11/extensions/XTest.h>
+#include <X11/extensions/Xfixes.h>
 #include <X11/keysym.h>
 
 #include <cmath>
@@ -116,6 +117,16 @@ void Robot::key(const std::string& name) {
 void Robot::take_focus() {
   XSetInputFocus(connection_->display, DefaultRootWindow(connection_->display), RevertToNone, CurrentTime);
   XSync(connection_->display, False);
+}
+
+std::vector<std::uint32_t> Robot::cursor() const {
+  XFixesCursorImage* image = XFixesGetCursorImage(connection_->display);
+  if (image == nullptr) throw std::runtime_error("the X server does not tell its cursor");
+  const std::size_t count = std::size_t{image->width} * image->height;
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t n = 0; n < count; ++n) pixels.push_back(static_cast<std::uint32_t>(image->pixels[n]));
+  XFree(image);
+  return pixels;
 }
 
 }  // namespace vpe::window

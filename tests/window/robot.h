@@ -1,8 +1,10 @@
 // A virtual screen, and a simulated user that moves the mouse and presses keys on it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace vpe::window {
 
@@ -38,6 +40,9 @@ class Robot {
   void key_up(const std::string& name);
   void key(const std::string& name);
   void take_focus();  // from the window, as another program does
+
+  // Returns the pixels of the cursor as the screen shows it, alpha in the highest byte, row by row.
+  std::vector<std::uint32_t> cursor() const;
 
  private:
   struct Connection;

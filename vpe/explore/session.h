@@ -141,6 +141,9 @@ class Session {
   void drag(glm::dvec2 xy, std::optional<double> time_s = std::nullopt);
   void release(std::optional<double> time_s = std::nullopt);
   MouseUse mouse_use() const { return use_; }
+  // Returns the ground that a drag holds, or tilts about, metres from the planet's centre; nullopt over the sky and
+  // without a drag.
+  std::optional<glm::dvec3> held_m() const { return use_ == MouseUse::kNone ? std::nullopt : held_m_; }
   // Moves the goal of the distance by 1.35 a notch; advance() reaches it within WheelLimits::kTime_s. In a flight,
   // walk and drive it changes the field of view, in fly the speed.
   void wheel(glm::dvec2 xy, double notches);
@@ -200,7 +203,7 @@ class Session {
   MouseUse use_ = MouseUse::kNone;
   mars::Pose begun_;                  // pose of the image, when the button was pressed
   glm::dvec2 begun_xy_{0, 0};         // where the button was pressed; in kLook, where the cursor was last
-  std::optional<glm::dvec3> held_m_;  // ground under the cursor, when the button was pressed
+  std::optional<glm::dvec3> held_m_;  // ground under the cursor, or in kTilt in the middle, at the press
 };
 
 }  // namespace vpe::explore

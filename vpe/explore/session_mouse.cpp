@@ -32,7 +32,10 @@ void Session::press(MouseUse use, glm::dvec2 xy, std::optional<double> time_s) {
   use_ = looks && use != MouseUse::kNone ? MouseUse::kLook : use;
   begun_ = seen();
   begun_xy_ = xy;
-  held_m_ = use_ == MouseUse::kHold ? ground_at(begun_, screen_, xy, ground_) : std::nullopt;
+  held_m_.reset();
+  if (use_ == MouseUse::kHold) held_m_ = ground_at(begun_, screen_, xy, ground_);
+  if (use_ == MouseUse::kTilt)
+    held_m_ = ground_at(begun_, screen_, {screen_.width / 2.0, screen_.height / 2.0}, ground_);
   samples_.clear();
   if (time_s) samples_.add(*time_s, xy, pose_);
 }

@@ -9,6 +9,7 @@
 #include "vpe/explore/foresight.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/marks/flight_marks.h"
+#include "vpe/window/marks/pivot_mark.h"
 
 namespace vpe::window {
 
@@ -187,6 +188,8 @@ void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {
   draw_flight_marks(list, session_, flight_.selected(), eye);
   drawing_.draw_marks(list, session_, under_cursor_, eye);
   guide_.draw_marks(list, session_, eye);
+  if (session_.mouse_use() == explore::MouseUse::kTilt && session_.held_m())
+    draw_pivot_mark(list, *session_.held_m(), eye);
 }
 
 }  // namespace vpe::window

@@ -15,6 +15,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "vpe/window/ui/hand_cursor.h"
+
 namespace vpe::window {
 
 struct Display::State {
@@ -252,6 +254,22 @@ void Display::catch_cursor(bool on) {
   glfwGetCursorPos(window_, &x, &y);
   state_->x = x * state_->to_pixels;
   state_->y = y * state_->to_pixels;
+}
+
+void Display::show_hand(bool on) {
+  if (on == shows_hand_) return;
+  shows_hand_ = on;
+  int& flags = ImGui::GetIO().ConfigFlags;
+  flags = on ? flags | ImGuiConfigFlags_NoMouseCursorChange : flags & ~ImGuiConfigFlags_NoMouseCursorChange;
+  const int factor = static_cast<int>(std::lround(scale_));
+  if (on && factor != hand_factor_) {
+    if (hand_ != nullptr) glfwDestroyCursor(hand_);
+    CursorImage hand = closed_hand(factor);
+    const GLFWimage image{hand.side_px, hand.side_px, hand.rgba.data()};
+    hand_ = glfwCreateCursor(&image, hand.hot_px, hand.hot_px);
+    hand_factor_ = factor;
+  }
+  glfwSetCursor(window_, on ? hand_ : nullptr);
 }
 
 std::vector<Event> Display::events(double wait_s) {

@@ -11,6 +11,7 @@
 
 #include "vpe/core/image/image.h"
 
+struct GLFWcursor;
 struct GLFWwindow;
 
 namespace vpe::window {
@@ -87,6 +88,8 @@ class Display {
   // say that. ImGui sees no mouse meanwhile. Off puts the cursor back to where it was.
   void catch_cursor(bool on);
   bool has_caught_cursor() const { return has_caught_cursor_; }
+  // Shows a closed hand in place of the cursor that ImGui chooses.
+  void show_hand(bool on);
 
   // Waits for events for at most `wait_s` seconds (0: does not wait). Returns the events since the last call.
   std::vector<Event> events(double wait_s);
@@ -111,6 +114,9 @@ class Display {
   double scale_ = 1;
   bool is_fullscreen_ = false;
   bool has_caught_cursor_ = false;
+  bool shows_hand_ = false;
+  GLFWcursor* hand_ = nullptr;           // once it was shown
+  int hand_factor_ = 0;                  // of its size
   int windowed_[4] = {0, 0, 1280, 720};  // position and size outside of full screen
 };
 
