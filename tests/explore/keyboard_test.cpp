@@ -144,9 +144,15 @@ TEST(Keyboard, CommonKeysHaveTheirUsualActions) {
       {"+", {ActionKind::kZoomIn}},
       {"Shift++", {ActionKind::kZoomIn}},
       {"-", {ActionKind::kZoomOut}},
+      {"X", {ActionKind::kCatchCursor}},
+      {"Ctrl++", {ActionKind::kLettersLarger}},
+      {"Ctrl+Shift++", {ActionKind::kLettersLarger}},
+      {"Ctrl+-", {ActionKind::kLettersSmaller}},
+      {"Ctrl+0", {ActionKind::kLettersUsual}},
   };
   for (const auto& [chord, action] : expected) EXPECT_EQ(press(chord), std::vector{action}) << chord;
-  for (const char* chord : {"W", "Left", "Shift+N", "Ctrl+0", "F7"}) EXPECT_TRUE(press(chord).empty()) << chord;
+  for (const char* chord : {"W", "Left", "Shift+N", "Shift+0", "F7"})
+    EXPECT_TRUE(press(chord).empty()) << chord;
 }
 
 TEST(Keyboard, OnlySomeActionsRepeat) {

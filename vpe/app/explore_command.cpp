@@ -186,6 +186,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.session.mouse = vpe::explore::mouse_choices(preferences);
   setup.panels = last.panels;
   setup.side_px = last.side_px;
+  if (arguments.scale <= 0) setup.letters = last.letters;
   setup.session.settings = make_settings(arguments.image);
   if (arguments.restores_overlays) restore_overlays(last.overlays, arguments.image, setup.session.settings);
   setup.session.interest = parse_interest(arguments.image);
@@ -243,11 +244,13 @@ window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> plane
           [planet, common] { return std::make_unique<WindowPainter>(planet, common); }};
 }
 
-// Writes the session file. Returns "", or what went wrong; there is no file if there is no folder for it.
+// Writes the session file; the scale of letters only if the command line does not say one. Returns "", or what went wrong; there is no file if there is no folder for it.
 std::string keep_session(const window::ExploreWindow& shown, const std::string& planet,
-                         const std::filesystem::path& file, vpe::explore::LastSession& last) {
+                         const std::filesystem::path& file, bool keeps_letters,
+                         vpe::explore::LastSession& last) {
   last.panels = shown.state().panels;
   last.side_px = shown.state().side_px;
+  if (keeps_letters) last.letters = shown.state().letters;
   last.overlays.clear();
   for (const std::string& overlay : window::overlays_on(shown.session().settings()))
     last.overlays += (last.overlays.empty() ? "" : "\n") + overlay;
@@ -314,8 +317,8 @@ void explore(const ExploreArguments& given, const Common& common) {
     setup.command_line = [&file](const vpe::explore::Session& session) { return command_line(file, session); };
     setup.display.title =
         "vpe - " + planet->meta().body + (planet->meta().illustration ? " (finest ground is synthetic)" : "");
-    const auto keep = [&files, &last, &file](const window::ExploreWindow& shown) {
-      return keep_session(shown, file, files.session, last);
+    const auto keep = [&, keeps_letters = here.scale <= 0](const window::ExploreWindow& shown) {
+      return keep_session(shown, file, files.session, keeps_letters, last);
     };
     setup.keep_session = [keep](const window::ExploreWindow& shown) { (void)keep(shown); };
     window::ExploreWindow shown(std::move(setup));

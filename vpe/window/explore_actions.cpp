@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "mars/geodesy/place_text.h"
@@ -18,13 +19,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kZoomStep = 1.15;  // of the field of view
+constexpr double kZoomStep = 1.15;    // of the field of view
+constexpr double kLettersStep = 1.1;  // of the scale
 
 // Actions of the window while a panorama is entered. Others would move the camera, which is not shown then.
 using Kind = explore::ActionKind;
-constexpr std::array kInside{Kind::kRecord,     Kind::kLeave,      Kind::kRecentreHead, Kind::kMap,
-                             Kind::kHidePanels, Kind::kFullScreen, Kind::kHelp,         Kind::kEnterOverlook,
-                             Kind::kFiles,      Kind::kPanelKeys};
+constexpr std::array kInside{Kind::kRecord,      Kind::kLeave,      Kind::kRecentreHead,  Kind::kMap,
+                             Kind::kHidePanels,  Kind::kFullScreen, Kind::kHelp,          Kind::kEnterOverlook,
+                             Kind::kFiles,       Kind::kPanelKeys,  Kind::kLettersLarger, Kind::kLettersSmaller,
+                             Kind::kLettersUsual};
 
 constexpr const char* kNoBookmarks = "there is no folder for bookmarks: HOME is not set";
 
@@ -138,6 +141,18 @@ void ExploreWindow::restore_flight(const fs::path& copy) {
   flight_.offer(backup_.abandoned());
 }
 
+void ExploreWindow::scale_letters(double factor) {
+  constexpr double kStep = 0.05;
+  const double scale = kStep * std::round(display_.scale() * factor / kStep);
+  int width = 1;
+  int height = 1;
+  display_.framebuffer(width, height);
+  const double most = std::min(Display::kLargestScale, largest_scale(width, height));
+  state_.letters = std::clamp(scale, Display::kSmallestScale, std::max(Display::kSmallestScale, most));
+  show_message("scale of letters and panels " + formatted("%.2f", state_.letters) +
+               (scale > most ? ": the window has no room for more" : ""));
+}
+
 std::string ExploreWindow::act(const explore::Action& action) {
   const auto go = [this](const std::optional<explore::SavedView>& view) -> std::string {
     if (!view) return "there is no other view in the history";
@@ -204,6 +219,12 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kMap: state_.large_map = !state_.large_map; return {};
     case Kind::kHidePanels: state_.panels = !state_.panels; return {};
     case Kind::kFullScreen: display_.set_fullscreen(!display_.is_fullscreen()); return {};
+    case Kind::kLettersLarger: scale_letters(kLettersStep); return {};
+    case Kind::kLettersSmaller: scale_letters(1 / kLettersStep); return {};
+    case Kind::kLettersUsual:
+      state_.letters = 0;
+      show_message("letters of the usual size");
+      return {};
     case Kind::kScreenshot:
       if (shows_final_image())
         save_image();

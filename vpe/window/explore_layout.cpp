@@ -5,6 +5,13 @@
 
 namespace vpe::window {
 
+double largest_scale(int width, int height) {
+  using L = LayoutLimits;
+  constexpr double kStep = 0.05;
+  const double scale = std::min(width * L::kSideShare / L::kSide_px, height / L::kLeastHeight_px);
+  return kStep * std::floor(scale / kStep + 1e-9);
+}
+
 ExploreLayout layout_of(const LayoutInput& input) {
   using L = LayoutLimits;
   constexpr double kLeast_px = 16;  // of the view, so that there is always an image
@@ -21,7 +28,7 @@ ExploreLayout layout_of(const LayoutInput& input) {
   if (layout.is_narrow) {
     layout.view.width = std::max(kLeast_px, width);
     if (input.panels && input.side_is_open)
-      layout.side = {0, 0, std::round(std::min(wanted, width * 0.9)), layout.view.height};
+      layout.side = {0, 0, std::round(std::min(wanted, width * L::kSideShare)), layout.view.height};
     return layout;
   }
   const double side = input.panels ? std::round(std::min(wanted, width - L::kLeastView_px * input.scale)) : 0.0;

@@ -11,6 +11,7 @@ namespace vpe::window {
 
 namespace {
 
+constexpr double kBarsNeed_px = 250;  // width at scale 1
 const ImVec4 kHintColour{1, 0.84F, 0.55F, 1};
 constexpr const char* kCaught =
     "Moving the mouse looks around  \u00b7  wheel: speed  \u00b7  Esc or X lets the cursor go";
@@ -74,10 +75,13 @@ void ExploreWindow::draw_notes() {
 void ExploreWindow::draw_over_view() {
   if (state_.large_map || guide_.inside() != nullptr) return;
   const double scale = display_.scale();
-  if (const std::string error = draw_overlay_bar(view_area_, scale, session_, setup_.places_file, widgets_);
-      !error.empty())
-    show_message(error, true);
-  draw_modes();
+  // A side panel over the view leaves the rest.
+  ViewArea free = view_area_;
+  if (layout_.is_narrow) {
+    free.x += layout_.side.width + 24 * scale;
+    free.width -= layout_.side.width + 24 * scale;
+  }
+  if (free.width > kBarsNeed_px * scale) draw_bars(free);
   if (measure_.points().size() >= 2 && view_area_.height > 2 * MeasurePanel::kStrip_px * scale) {
     ImGui::SetNextWindowPos(
         at(view_area_.x, view_area_.y + view_area_.height - MeasurePanel::kStrip_px * scale));
@@ -93,10 +97,25 @@ void ExploreWindow::draw_over_view() {
   }
 }
 
-void ExploreWindow::draw_modes() {
+// Draws the modes at the upper left, and the switches of overlays at the upper right, below them where there is no room
+// beside them.
+void ExploreWindow::draw_bars(const ViewArea& area) {
   const double scale = display_.scale();
-  const double beside = layout_.is_narrow ? layout_.side.width + 30 * scale : view_area_.x + 6 * scale;
-  ImGui::SetNextWindowPos(at(beside, view_area_.y + 6 * scale));
+  const glm::dvec2 modes = draw_modes(area);
+  ViewArea free = area;
+  if (modes.x + overlay_bar_width_px(setup_.places_file, scale) > area.width) {
+    free.y += modes.y;
+    free.height -= modes.y;
+  }
+  const std::string error = draw_overlay_bar(free, scale, session_, setup_.places_file, widgets_);
+  if (!error.empty()) show_message(error, true);
+}
+
+// Returns the room that they take, with the space around them.
+glm::dvec2 ExploreWindow::draw_modes(const ViewArea& area) {
+  const double scale = display_.scale();
+  const double space = 6 * scale;
+  ImGui::SetNextWindowPos(at(area.x + space, area.y + space));
   ImGui::SetNextWindowBgAlpha(0.55F);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(4 * scale, 4 * scale));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, at(3 * scale, 3 * scale));
@@ -118,8 +137,10 @@ void ExploreWindow::draw_modes() {
     if (const std::string error = catch_cursor(); !error.empty()) show_message(error, true);
   }
   ImGui::EndDisabled();
+  const ImVec2 size = ImGui::GetWindowSize();
   ImGui::End();
   ImGui::PopStyleVar(2);
+  return {static_cast<double>(size.x) + 2 * space, static_cast<double>(size.y) + space};
 }
 
 }  // namespace vpe::window

@@ -4,21 +4,30 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "vpe/explore/input/keyboard.h"
 #include "vpe/explore/places/arrival.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/panels/help_panel.h"
 #include "vpe/window/panels/settings_panels.h"
 
 namespace vpe::window {
 
 namespace {
 
-const ImVec4 kKeyColour{1, 0.84F, 0.55F, 1};
+// A slider that moved under the hand that holds it could not be held: the scale follows at the end.
+void draw_letters(double scale, WindowState& state, Widgets& widgets) {
+  double letters = state.letters_slid > 0 ? state.letters_slid : scale;
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
+  if (widgets.slide("Letters", letters, Display::kSmallestScale, Display::kLargestScale, "%.2f x", true,
+                    "size of letters and panels; Ctrl and + or -, Ctrl+0: the usual one"))
+    state.letters_slid = letters;
+  if (state.letters_slid > 0 && !ImGui::IsAnyItemActive()) state.letters = std::exchange(state.letters_slid, 0);
+}
 
-void draw_control_panel(explore::Session& session, WindowState& state, Widgets& widgets) {
+void draw_control_panel(explore::Session& session, double scale, WindowState& state, Widgets& widgets) {
   begin_part("control");
   ImGui::PushItemWidth(ImGui::GetFontSize() * 11);
   mars::Pose pose = session.pose();
@@ -71,52 +80,8 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
     widgets.number("Eye distance (m)", state.eye_base_m, 0, 1e6, 1, "%.3g",
                    "0: a thirtieth of the height above ground");
   }
+  draw_letters(scale, state, widgets);
   ImGui::EndChild();
-}
-
-void draw_explore_help(const ViewArea& area, bool& is_open, Widgets& widgets) {
-  static constexpr const char* kMouse[][2] = {
-      {"left drag", "move the ground with the cursor; in a flight: look around"},
-      {"wheel", "zoom to the ground under the cursor; in a flight: field of view"},
-      {"Ctrl + left drag", "look around in place; in fly and walk any left drag does"},
-      {"X in fly, walk, drive",
-       "the mouse looks around without a button, the wheel sets the speed; Esc or X ends it"},
-      {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
-      {"double click", "fly there"},
-      {"with a tool of Draw",
-       "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
-      {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project"},
-      {"on the map",
-       "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "
-       "region of interest"},
-  };
-  ImGui::SetNextWindowPos(at(area.x + area.width / 2, area.height / 2), ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::SetNextWindowSizeConstraints(at(0, 0), at(area.width, area.height));
-  ImGui::Begin("help", nullptr,
-               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar);
-  const auto row = [](const char* what, const char* does) {
-    ImGui::TableNextColumn();
-    coloured_line(kKeyColour, what);
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(does);
-  };
-  if (widgets.button("Close help", "Esc or F1")) is_open = false;
-  if (ImGui::BeginTable("mouse", 2, ImGuiTableFlags_SizingFixedFit)) {
-    for (const auto& line : kMouse) row(line[0], line[1]);
-    ImGui::EndTable();
-  }
-  ImGui::Separator();
-  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit)) {
-    const std::vector<explore::HelpLine> lines = explore::keyboard_help();
-    const std::size_t half = (lines.size() + 1) / 2;
-    for (std::size_t n = 0; n < half; ++n) {
-      row(lines[n].keys.c_str(), lines[n].meaning.c_str());
-      if (n + half < lines.size()) row(lines[n + half].keys.c_str(), lines[n + half].meaning.c_str());
-    }
-    ImGui::EndTable();
-  }
-  ImGui::End();
 }
 
 }  // namespace
@@ -214,7 +179,7 @@ void ExploreWindow::draw_tabs() {
   ImGui::PopStyleVar(2);
   if (!is_shown) return;
   if (tab("View")) {
-    draw_control_panel(session_, state_, widgets_);
+    draw_control_panel(session_, display_.scale(), state_, widgets_);
     ImGui::EndTabItem();
   }
   if (tab("Places")) {

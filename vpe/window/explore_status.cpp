@@ -12,6 +12,7 @@ void ExploreWindow::draw_status() {
   ImGui::SetNextWindowPos(at(layout_.status.x, layout_.status.y));
   ImGui::SetNextWindowSize(at(layout_.status.width, layout_.status.height));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(8 * display_.scale(), 5 * display_.scale()));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, at(1, 1));
   ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
   const explore::LongitudeRange range = setup_.preferences.longitude;
   std::string camera = camera_text(session_, range);
@@ -60,7 +61,7 @@ void ExploreWindow::draw_status() {
   widgets_.record("quality");
   widgets_.tip(quality.details.c_str());
   ImGui::End();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
 }
 
 QualityText ExploreWindow::quality_of_image() const {

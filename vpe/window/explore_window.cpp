@@ -60,6 +60,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   state_.drawn_by = setup_.drawn_by;
   state_.panels = setup_.panels;
   state_.side_px = setup_.side_px;
+  state_.letters = setup_.letters;
   if (!setup_.greets) welcome_.dismiss();
   files_.add_recent(setup_.planet_file.string());
   files_.add_recent(setup_.project_file.string());
@@ -235,6 +236,7 @@ void ExploreWindow::keep_work(bool is_busy) {
                         state_.drawn_by,
                         state_.panels,
                         state_.side_px,
+                        state_.letters,
                         overlays_on(session_.settings()),
                         display_.size()};
   if (session_kept_ == now) return;
@@ -247,6 +249,8 @@ void ExploreWindow::lay_out() {
   int width = 1;
   int height = 1;
   display_.framebuffer(width, height);
+  const double scale = state_.letters > 0 ? state_.letters : display_.usual_scale();
+  display_.set_scale(std::min(scale, largest_scale(width, height)));
   layout_ = layout_of({width, height, display_.scale(), state_.panels, state_.side_px, state_.side_is_open});
   view_area_ = layout_.view;
   const glm::ivec2 size = image_layout().eye_size();

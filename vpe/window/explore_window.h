@@ -97,6 +97,7 @@ struct ExploreSetup : ShownPlanet {
   std::filesystem::path hotspots_file;  // likewise; empty: none
   bool panels = true;                   // shown at the start
   double side_px = 0;                   // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
+  double letters = 0;                   // scale of text and panels chosen earlier; 0: that of `display`
   std::vector<core::Place> places;      // that the search box finds
   std::string places_file;              // the same, for names over the image; empty: there is none
   bool greets = false;                  // says at the start how to move
@@ -118,6 +119,8 @@ struct WindowState {
   bool panels = true;
   double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
   bool side_is_open = false;  // in a narrow window
+  double letters = 0;  // scale of text and panels that was chosen; 0: the usual one. A small window has less.
+  double letters_slid = 0;  // while the slider is held; 0: it is not
   bool help = false;
   bool files = false;        // the window "File" is open
   bool preferences = false;  // and the window "Preferences"
@@ -205,6 +208,7 @@ class ExploreWindow {
     core::DrawnBy drawn_by;
     bool panels;
     double side_px;
+    double letters;
     std::vector<std::string> overlays;
     std::pair<int, int> size;
     bool operator==(const KeptSession&) const = default;
@@ -235,7 +239,8 @@ class ExploreWindow {
   void draw_side_handle();
   void draw_over_view();
   void draw_notes();
-  void draw_modes();
+  void draw_bars(const ViewArea& area);
+  glm::dvec2 draw_modes(const ViewArea& area);
   void draw_status();
   void draw_map(MapPanel& map, int width, int height);
   void fly_to(const core::Place& place);
@@ -256,6 +261,7 @@ class ExploreWindow {
   void save_image();
   void keep_work(bool is_busy);
   void restore_flight(const std::filesystem::path& copy);
+  void scale_letters(double factor);
   void set_recording(bool on, const std::filesystem::path& file = {});
   // explore_files.cpp:
   void draw_files();

@@ -119,6 +119,8 @@ const core::KeyRegistry<LastSession>& session_keys() {
       {"window.panels", Declare::toggle<&S::panels>(), "", "map, panels and figures are shown"},
       {"window.side", Declare::number<&S::side_px>(0, kMaxWindow_px), "",
        "width of the side panel; 0 = the usual one"},
+      {"window.letters", Declare::number<&S::letters>(0, 8), "",
+       "scale of letters and panels chosen in the window; 0 = that of the preferences or the display"},
       {"last.overlays", Declare::text<&S::overlays>("settings, one a line", no_problem), "",
        "what was drawn over images, one setting a line"},
       {"last.recent", Declare::text<&S::recent>("names of files, one a line", no_problem), "",

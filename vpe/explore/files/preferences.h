@@ -59,6 +59,7 @@ struct LastSession {
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   bool panels = true;    // map, panels and figures are shown
   double side_px = 0;    // width of the side panel at scale 1; 0: the usual one
+  double letters = 0;    // scale of letters and panels that was chosen in the window; 0: none was
   std::string overlays;  // settings of overlays that are on, one a line, as "overlay.scale=on"
   std::string recent;    // paths of the files opened last, one a line, the newest first
 };

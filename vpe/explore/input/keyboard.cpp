@@ -34,6 +34,7 @@ constexpr Modifiers kAlt{.alt = true};
 constexpr Modifiers kShift{.shift = true};
 // Most keyboards need Shift for a +.
 constexpr Chord kTypedPlus{Key::kPlus, kShift};
+constexpr Chord kTypedCtrlPlus{Key::kPlus, {.ctrl = true, .shift = true}};
 
 std::vector<PressedBinding> make_pressed() {
   std::vector<PressedBinding> all{
@@ -63,6 +64,10 @@ std::vector<PressedBinding> make_pressed() {
       {{Key::kTab, kAlone}, {A::kMap}},
       {{Key::kH, kAlone}, {A::kHidePanels}},
       {{Key::kF11, kAlone}, {A::kFullScreen}},
+      {{Key::kPlus, kCtrl}, {A::kLettersLarger}},
+      {kTypedCtrlPlus, {A::kLettersLarger}},
+      {{Key::kMinus, kCtrl}, {A::kLettersSmaller}},
+      {{Key::k0, kCtrl}, {A::kLettersUsual}},
       {{Key::kF12, kAlone}, {A::kScreenshot}},
       {{Key::kSlash, kAlone}, {A::kSearch}},
       {{Key::kF, kCtrl}, {A::kSearch}},
@@ -95,8 +100,8 @@ bool is_pressed_with_alt(Key key) {
 std::string keys_of(const ActionInfo& action) {
   std::vector<std::string> keys;
   for (const PressedBinding& binding : pressed()) {
-    const bool is_shown = binding.action.kind == action.kind && binding.chord != kTypedPlus;
-    if (is_shown) keys.push_back(name(binding.chord));
+    const bool is_typed = binding.chord == kTypedPlus || binding.chord == kTypedCtrlPlus;
+    if (binding.action.kind == action.kind && !is_typed) keys.push_back(name(binding.chord));
   }
   if (keys.empty()) return "";
   if (action.is_numbered) return keys.front() + " ... " + keys.back();

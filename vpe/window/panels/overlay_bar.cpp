@@ -13,6 +13,12 @@ struct Switch {
   const char* tip;
 };
 
+// Sizes at scale 1.
+constexpr double kSign_px = 34;  // for the sign of recording, in the corner
+constexpr double kSwitch_px = 26;
+constexpr double kPadding_px = 4;
+constexpr double kGap_px = 3;
+
 constexpr const char* kNamesKey = "overlay.names";
 constexpr std::array kSwitches{Switch{"Aa", kNamesKey, "", "Names of places"},
                                Switch{"\u2194", "overlay.scale", "off", "Scale bar"},
@@ -24,14 +30,19 @@ constexpr std::array kSwitches{Switch{"Aa", kNamesKey, "", "Names of places"},
 
 }  // namespace
 
+double overlay_bar_width_px(const std::string& names, double scale) {
+  const auto count = static_cast<double>(kSwitches.size() - (names.empty() ? 1 : 0));
+  return scale * (kSign_px + 2 * kPadding_px + count * (kSwitch_px + kGap_px));
+}
+
 std::string draw_overlay_bar(const ViewArea& area, double scale, explore::Session& session,
                              const std::string& names, Widgets& widgets) {
   std::string error;
-  // A sign of recording is in the corner.
-  ImGui::SetNextWindowPos(at(area.x + area.width - 34 * scale, area.y + 6 * scale), ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowPos(at(area.x + area.width - kSign_px * scale, area.y + 6 * scale), ImGuiCond_Always,
+                          {1, 0});
   ImGui::SetNextWindowBgAlpha(0.55F);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(4 * scale, 4 * scale));
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, at(3 * scale, 3 * scale));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(kPadding_px * scale, kPadding_px * scale));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, at(kGap_px * scale, kGap_px * scale));
   ImGui::Begin("overlays", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
@@ -43,7 +54,7 @@ std::string draw_overlay_bar(const ViewArea& area, double scale, explore::Sessio
     if (!std::exchange(is_first, false)) ImGui::SameLine();
     bool is_on = text != one.off;
     const std::string label = std::string(one.sign) + "##" + one.key;
-    if (!widgets.toggle(label.c_str(), is_on, one.tip, 26 * scale)) continue;
+    if (!widgets.toggle(label.c_str(), is_on, one.tip, kSwitch_px * scale)) continue;
     const std::string next = is_on ? (is_names ? names : "on") : one.off;
     if (std::string problem = session.set(one.key, next); !problem.empty()) error = std::move(problem);
   }

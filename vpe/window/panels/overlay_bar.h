@@ -15,6 +15,9 @@ namespace vpe::window {
 std::string draw_overlay_bar(const ViewArea& area, double scale, explore::Session& session,
                              const std::string& names, Widgets& widgets);
 
+// Returns the width that the row needs at the right edge of a view. Pure.
+double overlay_bar_width_px(const std::string& names, double scale);
+
 // Returns the assignments of the session's overlays that are on, as "overlay.scale=on", to be kept. Pure.
 std::vector<std::string> overlays_on(const core::Settings& settings);
 

@@ -166,7 +166,12 @@ Display::Display(const DisplayOptions& options) : state_(std::make_unique<State>
 
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
-  choose_scale(options.scale);
+  float x = 1;
+  float y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  const double wanted = options.scale > 0 ? options.scale : static_cast<double>(std::max(x, y));
+  scale_ = usual_scale_ = std::clamp(wanted, kSmallestScale, kLargestScale);
+  make_fonts();
   ImGui_ImplGlfw_InitForOpenGL(window_, true);  // calls the callbacks above too
   ImGui_ImplOpenGL3_Init("#version 150");
 }
@@ -179,14 +184,21 @@ Display::~Display() {
   glfwTerminate();
 }
 
-void Display::choose_scale(double wanted) {
-  float x = 1;
-  float y = 1;
-  glfwGetWindowContentScale(window_, &x, &y);
-  scale_ = std::clamp(wanted > 0 ? wanted : static_cast<double>(std::max(x, y)), 0.5, 4.0);
+void Display::set_scale(double scale) {
+  const double next = std::clamp(scale, kSmallestScale, kLargestScale);
+  if (next == scale_) return;
+  scale_ = next;
+  make_fonts();
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Display::make_fonts() {
+  ImGui::GetStyle() = ImGuiStyle();
   set_colours();
   ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale_));
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  fonts.Clear();
   // Latin with extensions, Greek, punctuation, arrows and symbols of the panels.
   static const ImWchar kRanges[] = {0x20,   0x24f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2190,
                                     0x21ff, 0x2200, 0x2265, 0x25a0, 0x25ff, 0};

@@ -76,6 +76,11 @@ class Display {
 
   GLFWwindow* handle() const { return window_; }
   double scale() const { return scale_; }
+  // Returns the scale of DisplayOptions, or the monitor's.
+  double usual_scale() const { return usual_scale_; }
+  // Makes fonts and sizes for another scale, kSmallestScale to kLargestScale, between two frames. The same one again
+  // costs nothing.
+  void set_scale(double scale);
   void framebuffer(int& width, int& height) const;
   // Returns the window's size in screen coordinates, or its former size while it fills the screen.
   std::pair<int, int> size() const;
@@ -103,15 +108,19 @@ class Display {
   // Returns true if ImGui has kept input for the next frame, so that another one is due.
   static bool has_input_left();
 
+  static constexpr double kSmallestScale = 0.5;
+  static constexpr double kLargestScale = 4;
+
   struct State;  // for the library's callbacks
 
  private:
-  void choose_scale(double wanted);
+  void make_fonts();
   core::RgbImage read_back() const;
 
   std::unique_ptr<State> state_;
   GLFWwindow* window_ = nullptr;
   double scale_ = 1;
+  double usual_scale_ = 1;
   bool is_fullscreen_ = false;
   bool has_caught_cursor_ = false;
   bool shows_hand_ = false;
