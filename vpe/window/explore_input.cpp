@@ -39,7 +39,7 @@ void ExploreWindow::handle(const Event& event) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
-  if (handle_panel_keys(event) || handle_drawing(event)) return;
+  if (handle_panel_keys(event) || handle_marks(event)) return;
   switch (event.kind) {
     case Event::Kind::kKeyPress:
     case Event::Kind::kKeyRepeat:

@@ -53,18 +53,23 @@ std::string ExploreWindow::open_project() {
   return session_.flights().load(*project.flight_text);
 }
 
-bool ExploreWindow::handle_drawing(const Event& event) {
+// Lets drawings and the flight take an event of the view. Returns true if it is theirs.
+bool ExploreWindow::handle_marks(const Event& event) {
   if (guide_.inside() != nullptr) return false;
   const ImGuiIO& io = ImGui::GetIO();
   const bool is_over_view = !state_.large_map && !io.WantCaptureMouse && state_.image_error.empty();
   const ImageLayout layout = image_layout();
-  // A vertex stays in the image of the eye in which it was taken.
-  const int eye = drawing_.sketch().held() ? held_eye_ : layout.eye_at(cursor_);
+  // What is held stays in the image of the eye in which it was taken.
+  const bool holds = drawing_.sketch().held() || flight_.holds_pose();
+  const int eye = holds ? held_eye_ : layout.eye_at(cursor_);
   if (event.kind == Event::Kind::kPress) held_eye_ = eye;
   std::optional<glm::dvec2> xy;
   if (is_over_view && layout.image_area().holds(cursor_.x, cursor_.y)) xy = layout.xy_of(eye, cursor_);
   const core::View view = eye_image(eye).view;
-  const bool is_mine = drawing_.handle(event, xy, io.WantTextInput || panel_focus_.is_on(), session_, view);
+  const bool draws = drawing_.sketch().tool().has_value();
+  const bool is_typing = io.WantTextInput || panel_focus_.is_on();
+  const bool is_mine = drawing_.handle(event, xy, is_typing, session_, view) ||
+                       (!draws && flight_.handle(event, xy, session_, view));
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
   return is_mine;
 }

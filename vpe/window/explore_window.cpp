@@ -167,7 +167,8 @@ bool ExploreWindow::step(double wait_s) {
     frames_due_ = kFramesAfterChange;
   }
   follow_caught_cursor();
-  display_.show_hand(session_.mouse_use() == explore::MouseUse::kHold);
+  display_.show_hand(session_.mouse_use() == explore::MouseUse::kHold || flight_.holds_pose() ||
+                     drawing_.sketch().held().has_value());
   const auto now = Clock::now();
   // The time of a rest does not count as motion.
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;

@@ -279,7 +279,7 @@ class ExploreWindow {
   // explore_project.cpp:
   std::string open_project();
   bool has_project() const { return !project_file_.empty(); }
-  bool handle_drawing(const Event& event);
+  bool handle_marks(const Event& event);
   void take_drawing_actions();
   std::string project_text() const;
   void save_project();

@@ -78,4 +78,26 @@ void draw_flight_marks(ImDrawList& list, explore::Session& session, std::optiona
   }
 }
 
+std::optional<PoseMark> pose_mark_at(explore::Session& session, const core::View& view, glm::dvec2 xy,
+                                     double reach_px) {
+  const explore::FlightPlayer* player = session.player();
+  const explore::FlightEditor* editor = session.flights().editor();
+  if (player == nullptr || editor == nullptr || session.follows_flight()) return std::nullopt;
+  const std::vector<scripts::Waypoint>& poses = editor->flight().waypoints;
+  if (poses.size() > kMostPoses) return std::nullopt;
+  const EyeImage eye{view, 0, 0};
+  const Projector projected(session, eye);
+  std::optional<PoseMark> nearest;
+  double nearest_px = reach_px;
+  for (std::size_t n = 0; n < poses.size(); ++n) {
+    const auto shown = projected(player->state_at(poses[n].time_s).camera.position_m);
+    if (!shown || shown->is_hidden) continue;
+    const glm::dvec2 mark{shown->at.x, shown->at.y};
+    if (glm::length(mark - xy) > nearest_px) continue;
+    nearest_px = glm::length(mark - xy);
+    nearest = PoseMark{n, mark};
+  }
+  return nearest;
+}
+
 }  // namespace vpe::window

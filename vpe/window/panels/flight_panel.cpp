@@ -47,7 +47,8 @@ FlightPanel::FlightPanel(std::string file, std::filesystem::path folder)
     : file_(std::move(file)), folder_(std::move(folder)) {}
 
 FlightActions FlightPanel::draw(explore::Session& session, bool is_recording, Widgets& widgets) {
-  FlightActions actions;
+  FlightActions actions = std::exchange(pending_, {});
+  shown_frame_ = ImGui::GetFrameCount();
   begin_part("flight");
   const bool follows = session.follows_flight();
   const explore::FlightPlayer* player = session.player();

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "vpe/core/view.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/ui/display.h"
 #include "vpe/window/ui/widgets.h"
 
 namespace vpe::window {
@@ -28,6 +30,15 @@ class FlightPanel {
   // Draws the panel inside its tab.
   FlightActions draw(explore::Session& session, bool is_recording, Widgets& widgets);
 
+  // Handles an event. `xy` is the cursor's position in the image of `view`, which is that of the session or of one of
+  // two eyes, or nullopt over anything else. While the panel is shown and no flight is followed, a press on the mark of
+  // a pose selects it, and a drag moves it over the ground with its altitude or height kept, as one step of undo. Returns
+  // true if nobody else may handle the event.
+  bool handle(const Event& event, std::optional<glm::dvec2> xy, explore::Session& session,
+              const core::View& view);
+  // Returns true while a pose is held.
+  bool holds_pose() const { return held_.has_value(); }
+
   // Opens a flight from a file, unless the present one has unsaved changes.
   FlightActions open_file(const std::string& file, explore::Session& session);
 
@@ -41,6 +52,14 @@ class FlightPanel {
   std::size_t selected() const { return static_cast<std::size_t>(waypoint_); }
 
  private:
+  struct HeldPose {
+    std::size_t index = 0;
+    glm::dvec2 aside_px{0, 0};  // of its mark from the cursor at the press
+    bool has_moved = false;
+  };
+  bool is_shown() const;
+  bool take_pose(const Event& event, glm::dvec2 xy, explore::Session& session, const core::View& view);
+  void drag_pose(glm::dvec2 xy, explore::Session& session, const core::View& view);
   static void draw_player(explore::Session& session, Widgets& widgets);
   void draw_empty(explore::Session& session, FlightActions& actions, Widgets& widgets);
   void draw_file(explore::Session& session, FlightActions& actions, Widgets& widgets);
@@ -54,6 +73,9 @@ class FlightPanel {
   std::vector<std::filesystem::path> abandoned_;
   double ground_speed_m_s_ = 0;  // 0: by height
   int waypoint_ = 0;             // selected in the list
+  int shown_frame_ = -2;         // ImGui's number of the frame in which the panel was drawn last
+  std::optional<HeldPose> held_;
+  FlightActions pending_;  // of handle(), for the next draw()
 };
 
 // Reads and parses a flight of any length. Throws base::FileError.
