@@ -108,6 +108,13 @@ TEST_F(HandsTest, ACaughtCursorIsLetGo) {
   EXPECT_FALSE(ImGui::GetIO().WantTextInput);
   key("x");
   EXPECT_TRUE(is_caught());
+  key("F6");  // into the panels
+  settle();
+  EXPECT_FALSE(is_caught());
+  key("Escape");
+  settle();
+  key("x");
+  EXPECT_TRUE(is_caught());
   window_->session().set_mode(explore::MotionMode::kOrbit);
   iterate(2);
   EXPECT_FALSE(is_caught());

@@ -57,16 +57,30 @@ std::optional<Key> key_of(int code) {
   return std::nullopt;
 }
 
-std::optional<explore::PadState> first_pad() {
+// Returns the number and the state of the first gamepad.
+std::optional<std::pair<int, GLFWgamepadstate>> find_pad() {
   for (int n = GLFW_JOYSTICK_1; n <= GLFW_JOYSTICK_LAST; ++n) {
     GLFWgamepadstate state;
-    if (glfwJoystickIsGamepad(n) != GLFW_TRUE || glfwGetGamepadState(n, &state) != GLFW_TRUE) continue;
-    explore::PadState pad;
-    std::copy(std::begin(state.buttons), std::end(state.buttons), pad.buttons.begin());
-    std::copy(std::begin(state.axes), std::end(state.axes), pad.axes.begin());
-    return pad;
+    if (glfwJoystickIsGamepad(n) == GLFW_TRUE && glfwGetGamepadState(n, &state) == GLFW_TRUE)
+      return std::pair{n, state};
   }
   return std::nullopt;
+}
+
+std::optional<explore::PadState> first_pad() {
+  const auto found = find_pad();
+  if (!found) return std::nullopt;
+  const GLFWgamepadstate& state = found->second;
+  explore::PadState pad;
+  std::copy(std::begin(state.buttons), std::end(state.buttons), pad.buttons.begin());
+  std::copy(std::begin(state.axes), std::end(state.axes), pad.axes.begin());
+  return pad;
+}
+
+std::string name_of_first_pad() {
+  const auto found = find_pad();
+  const char* name = found ? glfwGetGamepadName(found->first) : nullptr;
+  return name == nullptr ? "a gamepad" : name;
 }
 
 }  // namespace
@@ -74,6 +88,7 @@ std::optional<explore::PadState> first_pad() {
 Devices::Devices(const explore::Preferences& preferences, DeviceSources sources)
     : preferences_(preferences), sources_(std::move(sources)), tracker_(preferences.head) {
   if (!sources_.pad) sources_.pad = first_pad;
+  if (!sources_.pad_name) sources_.pad_name = name_of_first_pad;
   open_devices();
 }
 
@@ -104,6 +119,17 @@ void Devices::open_devices() {
   }
 }
 
+DeviceStates Devices::states(double time_s) const {
+  DeviceStates states;
+  if (pad_) states.pad = ShownPad{sources_.pad_name(), pad_->buttons, pad_->axes, pad_controls_};
+  if (sources_.space_mouse != nullptr) states.space_mouse = cap_controls_;
+  if (receiver_ != nullptr)
+    states.tracker = ShownTracker{receiver_->port(), tracker_.is_live(time_s), tracker_.look(time_s),
+                                  tracker_.received(), tracker_.ignored()};
+  states.errors = errors_;
+  return states;
+}
+
 std::optional<int> Devices::tracker_port() const {
   return receiver_ ? std::optional(receiver_->port()) : std::nullopt;
 }
@@ -123,7 +149,7 @@ void Devices::key(const Event& event) {
 }
 
 bool Devices::polls(double time_s) const {
-  return has_pad_ || cap_moves_ || receiver_ != nullptr || tracker_.is_moving(time_s);
+  return pad_ || explore::any(cap_controls_) || receiver_ != nullptr || tracker_.is_moving(time_s);
 }
 
 DeviceReading Devices::read(double time_s, bool typing, explore::MotionMode mode) {
@@ -137,19 +163,21 @@ DeviceReading Devices::read(double time_s, bool typing, explore::MotionMode mode
     controls.push_back(explore::keyboard_controls(held_, with_, mode));
     add(explore::keyboard_actions(presses, mode));
   }
-  if (preferences_.use_gamepad) {
-    const std::optional<explore::PadState> state = sources_.pad();
-    has_pad_ = state.has_value();
-    const explore::PadReading pad = gamepad_.read(state, preferences_.gamepad);
-    controls.push_back(pad.controls);
-    add(pad.actions);
-  }
-  if (preferences_.use_space_mouse && sources_.space_mouse != nullptr) {
+  pad_ = preferences_.use_gamepad ? sources_.pad() : std::nullopt;
+  const explore::PadReading pad = gamepad_.read(pad_, preferences_.gamepad);
+  pad_controls_ = pad.controls;
+  controls.push_back(pad.controls);
+  add(pad.actions);
+  cap_controls_ = {};
+  if (sources_.space_mouse != nullptr) {
+    // What is switched off is read too, or its events would come late.
     const explore::SpaceMouseReading cap =
         space_mouse_.read(sources_.space_mouse->poll(), preferences_.space_mouse, time_s);
-    cap_moves_ = explore::any(cap.controls);
-    controls.push_back(cap.controls);
-    add(cap.actions);
+    if (preferences_.use_space_mouse) {
+      cap_controls_ = cap.controls;
+      controls.push_back(cap.controls);
+      add(cap.actions);
+    }
   }
   reading.controls = explore::combine(controls);
   for (double explore::Controls::*rate :

@@ -16,6 +16,7 @@
 #include "vpe/explore/input/keyboard.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
+#include "vpe/window/panels/devices_panel.h"
 #include "vpe/window/ui/display.h"
 
 namespace vpe::window {
@@ -23,6 +24,7 @@ namespace vpe::window {
 // Sources of device states. Tests replace them.
 struct DeviceSources {
   std::function<std::optional<explore::PadState>()> pad;   // default: the first that GLFW finds
+  std::function<std::string()> pad_name;                   // default: as GLFW calls that one
   std::unique_ptr<explore::SpaceMouseSource> space_mouse;  // default: spacenavd, if it runs
 };
 
@@ -56,6 +58,8 @@ class Devices {
   // Returns true if a device must be polled because it sends no events.
   bool polls(double time_s) const;
   void recentre(double time_s) { tracker_.recentre(time_s); }
+  // Returns what the devices said at the last read().
+  DeviceStates states(double time_s) const;
   // Returns why devices could not be opened.
   const std::vector<std::string>& errors() const { return errors_; }
   // Returns the port for the head tracker's datagrams, or nullopt if it is off.
@@ -73,8 +77,9 @@ class Devices {
   explore::SpaceMouse space_mouse_;
   explore::HeadTracker tracker_;
   std::unique_ptr<explore::UdpReceiver> receiver_;
-  bool has_pad_ = false;
-  bool cap_moves_ = false;
+  std::optional<explore::PadState> pad_;  // at the last read()
+  explore::Controls pad_controls_;
+  explore::Controls cap_controls_;
   std::vector<std::string> errors_;
 };
 

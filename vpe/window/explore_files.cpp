@@ -44,8 +44,10 @@ void ExploreWindow::draw_files() {
 }
 
 void ExploreWindow::draw_preferences() {
-  const PreferencesActions actions =
-      window::draw_preferences(view_area_, display_.scale(), setup_.preferences, widgets_);
+  take(window::draw_preferences(view_area_, display_.scale(), setup_.preferences, widgets_));
+}
+
+void ExploreWindow::take(const PreferencesActions& actions) {
   if (actions.closes) state_.preferences = false;
   if (!actions.error.empty()) show_message(actions.error, true);
   if (!actions.changed) return;

@@ -100,7 +100,7 @@ void ExploreWindow::add_speed(double notches) {
     if (session_.follows_flight()) return;  // there it is the field of view
     return show_message("speed " + formatted("%.3g", session_.mover().speed()));
   }
-  const double sign = setup_.session.invert_wheel ? -1 : 1;
+  const double sign = setup_.preferences.invert_wheel ? -1 : 1;
   state_.speed = std::clamp(state_.speed * std::pow(explore::Mover::kSpeedNotch, sign * notches),
                             WindowState::kSlowest, WindowState::kFastest);
   show_message("speed " + formatted("%.3g", state_.speed));
@@ -109,7 +109,7 @@ void ExploreWindow::add_speed(double notches) {
 std::string ExploreWindow::catch_cursor() {
   if (session_.mode() == explore::MotionMode::kOrbit)
     return "the mouse looks around in fly, walk and drive; F changes the mode";
-  state_.help = state_.files = state_.large_map = false;
+  state_.help = state_.files = state_.preferences = state_.large_map = false;
   panel_focus_.leave();
   welcome_.dismiss();
   session_.release();
@@ -126,8 +126,8 @@ void ExploreWindow::let_cursor_go() {
 // Lets the cursor go where it is needed, or nothing is left to look at; else it stands in the middle of the view.
 void ExploreWindow::follow_caught_cursor() {
   if (!display_.has_caught_cursor()) return;
-  const bool needs_cursor =
-      state_.help || state_.files || state_.large_map || ImGui::GetIO().WantTextInput || panel_focus_.is_on();
+  const bool needs_cursor = state_.help || state_.files || state_.preferences || state_.large_map ||
+                            panel_focus_.is_on() || ImGui::GetIO().WantTextInput;
   if (needs_cursor || guide_.inside() != nullptr || session_.mode() == explore::MotionMode::kOrbit)
     return let_cursor_go();
   const ViewArea area = image_layout().eye_area(0);

@@ -10,6 +10,7 @@
 #include "vpe/explore/places/arrival.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/panels/devices_panel.h"
 #include "vpe/window/panels/help_panel.h"
 #include "vpe/window/panels/settings_panels.h"
 
@@ -28,7 +29,6 @@ void draw_letters(double scale, WindowState& state, Widgets& widgets) {
 }
 
 void draw_control_panel(explore::Session& session, double scale, WindowState& state, Widgets& widgets) {
-  begin_part("control");
   ImGui::PushItemWidth(ImGui::GetFontSize() * 11);
   mars::Pose pose = session.pose();
   bool changed = widgets.number("Longitude", pose.lon_deg, -360, 360, 0.1, "%.6f");
@@ -81,7 +81,6 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
                    "0: a thirtieth of the height above ground");
   }
   draw_letters(scale, state, widgets);
-  ImGui::EndChild();
 }
 
 }  // namespace
@@ -90,6 +89,7 @@ void ExploreWindow::draw_frame() {
   display_.begin_frame();
   widgets_.begin_frame();
   panel_focus_.begin_frame();
+  shown_devices_.reset();
   find_cursor();
   if (state_.large_map) {
     if (large_map_ == nullptr)
@@ -179,7 +179,10 @@ void ExploreWindow::draw_tabs() {
   ImGui::PopStyleVar(2);
   if (!is_shown) return;
   if (tab("View")) {
+    begin_part("control");
     draw_control_panel(session_, display_.scale(), state_, widgets_);
+    draw_devices();
+    ImGui::EndChild();
     ImGui::EndTabItem();
   }
   if (tab("Places")) {
@@ -222,6 +225,12 @@ void ExploreWindow::draw_tabs() {
     ImGui::EndTabItem();
   }
   ImGui::EndTabBar();
+}
+
+void ExploreWindow::draw_devices() {
+  if (!widgets_.header("Devices", false)) return;
+  shown_devices_ = devices_.states(now_s());
+  take(draw_devices_panel(*shown_devices_, setup_.preferences, widgets_));
 }
 
 // Draws what changes the side panel's width: its edge, or a button in a narrow window.

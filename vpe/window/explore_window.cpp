@@ -191,6 +191,7 @@ bool ExploreWindow::step(double wait_s) {
   const bool is_new = take_image();
   request_image();
   if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if (shown_devices_ && shown_devices_ != devices_.states(now_s())) frames_due_ = std::max(frames_due_, 1);
   if (is_new || (frames_due_ > 0 && now_s() >= next_frame_s_)) {
     draw_frame();
     --frames_due_;

@@ -237,6 +237,7 @@ class ExploreWindow {
   void draw_side();
   void draw_tabs();
   void draw_side_handle();
+  void draw_devices();
   void draw_over_view();
   void draw_notes();
   void draw_bars(const ViewArea& area);
@@ -266,6 +267,7 @@ class ExploreWindow {
   // explore_files.cpp:
   void draw_files();
   void draw_preferences();
+  void take(const PreferencesActions& actions);
   void use(const explore::Preferences& preferences);
   void open_file(const std::string& name);
   void open_flight(const std::filesystem::path& file);
@@ -330,6 +332,7 @@ class ExploreWindow {
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
   int held_eye_ = 0;                                         // in whose image the button was pressed
   Devices devices_;
+  std::optional<DeviceStates> shown_devices_;  // in the last frame, where it showed them
   explore::ViewHistory history_;
   SessionRecorder recorder_;
   core::RgbImage last_image_;  // pixels of drawn_

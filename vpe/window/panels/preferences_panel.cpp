@@ -90,6 +90,17 @@ void draw_key(std::size_t key, const explore::Preferences& preferences, Preferen
 
 }  // namespace
 
+void draw_preference_rows(std::string_view prefix, const explore::Preferences& preferences,
+                          PreferencesActions& actions, Widgets& widgets) {
+  if (!ImGui::BeginTable("keys", 2)) return;
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 10);
+  ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
+  const auto infos = explore::preference_keys().infos();
+  for (std::size_t key = 0; key < infos.size(); ++key)
+    if (infos[key].name.starts_with(prefix)) draw_key(key, preferences, actions, widgets);
+  ImGui::EndTable();
+}
+
 PreferencesActions draw_preferences(const ViewArea& area, double scale, const explore::Preferences& preferences,
                                     Widgets& widgets) {
   PreferencesActions actions;
@@ -107,13 +118,7 @@ PreferencesActions draw_preferences(const ViewArea& area, double scale, const ex
     actions.changed = explore::Preferences{};
   ImGui::Separator();
   begin_part("keys");
-  if (ImGui::BeginTable("keys", 2)) {
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 10);
-    ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
-    const std::size_t count = explore::preference_keys().infos().size();
-    for (std::size_t key = 0; key < count; ++key) draw_key(key, preferences, actions, widgets);
-    ImGui::EndTable();
-  }
+  draw_preference_rows("", preferences, actions, widgets);
   ImGui::EndChild();
   widgets.group("");
   ImGui::End();
