@@ -13,9 +13,9 @@ namespace vpe::voxel {
 namespace {
 
 // Beyond the border that fades: smooth_edges() reads up to 5 pixels away, stripes of nodata ground one.
-constexpr int kFilterReach_px = 8;
+constexpr int kFilterReach_px = 6;
 constexpr int kRowsOfTask = 16;
-constexpr int kChannels = 3;
+constexpr std::size_t kChannels = 3;
 
 core::SubRectangle common(const core::SubRectangle& a, const core::SubRectangle& b) {
   const int x0 = std::max(a.x, b.x);
@@ -68,40 +68,58 @@ class OuterRows {
  public:
   OuterRows(const core::SubRectangle& part, std::span<const base::Rgb> colour)
       : part_(part),
+        stride_(static_cast<std::size_t>(part.width) * kChannels),
         bytes_(reinterpret_cast<const std::uint8_t*>(colour.data())),
-        sums_(static_cast<std::size_t>(part.width + 2) * kChannels) {}
+        sums_(stride_ + 2 * kChannels),
+        left_(static_cast<std::size_t>(part.width)),
+        right_(static_cast<std::size_t>(part.width)) {}
 
-  // Selects the row of the image that at() is asked for.
+  // Selects the row of the image that write() is asked for.
   void set_row(int y) {
     const int near = std::clamp(y / kThinned, part_.y, part_.y + part_.height - 1);
     const int next = std::clamp(y % kThinned == 0 ? near - 1 : near + 1, part_.y, part_.y + part_.height - 1);
-    const std::size_t stride = static_cast<std::size_t>(part_.width) * kChannels;
-    const std::uint8_t* const a = bytes_ + static_cast<std::size_t>(near - part_.y) * stride;
-    const std::uint8_t* const b = bytes_ + static_cast<std::size_t>(next - part_.y) * stride;
-    for (std::size_t k = 0; k < stride; ++k) sums_[k + kChannels] = static_cast<std::uint16_t>(3 * a[k] + b[k]);
+    const std::uint8_t* const a = bytes_ + static_cast<std::size_t>(near - part_.y) * stride_;
+    const std::uint8_t* const b = bytes_ + static_cast<std::size_t>(next - part_.y) * stride_;
+    // Four times the colours, with the border's once more at either end.
+    std::uint16_t* const sum = sums_.data() + kChannels;
+    for (std::size_t k = 0; k < stride_; ++k) sum[k] = static_cast<std::uint16_t>(3 * a[k] + b[k]);
     for (std::size_t c = 0; c < kChannels; ++c) {
-      sums_[c] = sums_[kChannels + c];
-      sums_[kChannels + stride + c] = sums_[stride + c];
+      sums_[c] = sum[c];
+      sum[stride_ + c] = sum[stride_ - kChannels + c];
     }
+    mix(sum, sum - kChannels, reinterpret_cast<std::uint8_t*>(left_.data()));
+    mix(sum, sum + kChannels, reinterpret_cast<std::uint8_t*>(right_.data()));
   }
 
   // Writes pixels [begin, end) of the row.
   void write(int begin, int end, base::Rgb* out) const {
-    for (int x = begin; x < end; ++x, ++out) {
-      const int near = x / kThinned - part_.x + 1;
-      const int next = x % kThinned == 0 ? near - 1 : near + 1;
-      const std::uint16_t* const a = &sums_[static_cast<std::size_t>(near * kChannels)];
-      const std::uint16_t* const b = &sums_[static_cast<std::size_t>(next * kChannels)];
-      const auto mean = [&](int c) { return static_cast<std::uint8_t>((3 * a[c] + b[c] + 8) / 16); };
-      *out = {mean(0), mean(1), mean(2)};
+    if (begin >= end) return;
+    const base::Rgb* left = left_.data() + (begin / kThinned - part_.x);
+    const base::Rgb* right = right_.data() + (begin / kThinned - part_.x);
+    base::Rgb* const last = out + (end - begin);
+    if (begin % kThinned != 0) {
+      *out++ = *right++;
+      ++left;
     }
+    for (; last - out >= kThinned; out += kThinned) {
+      out[0] = *left++;
+      out[1] = *right++;
+    }
+    if (out != last) *out = *left;
   }
 
  private:
+  void mix(const std::uint16_t* near, const std::uint16_t* next, std::uint8_t* out) const {
+    for (std::size_t k = 0; k < stride_; ++k)
+      out[k] = static_cast<std::uint8_t>((3 * near[k] + next[k] + 8) / 16);
+  }
+
   core::SubRectangle part_;
+  std::size_t stride_;
   const std::uint8_t* bytes_;
-  std::vector<std::uint16_t>
-      sums_;  // four times the colours of a row, with the border's once more at either end
+  std::vector<std::uint16_t> sums_;
+  std::vector<base::Rgb> left_;  // of the even pixels
+  std::vector<base::Rgb> right_;
 };
 
 // Returns the distance of a pixel from the middle along its farther axis; 0 in it.
@@ -170,10 +188,16 @@ void merge_colours(const FoveaPlan& plan, const core::View& view, const FoveaCol
       if (y < fading.y || y >= fading.y + fading.height) continue;
       const base::Rgb* const sharp = from.dense.data() + offset(plan.dense, fading.x, y);
       base::Rgb* const out = colour.data() + offset(part, fading.x, y);
-      for (int k = 0; k < fading.width; ++k) {
-        const int distance = distance_px(plan.middle, fading.x + k, y);
-        out[k] = distance == 0 ? sharp[k] : mixed(sharp[k], out[k], distance);
-      }
+      const bool crosses = middle.width > 0 && y >= middle.y && y < middle.y + middle.height;
+      const int first_sharp = crosses ? middle.x - fading.x : fading.width;
+      const int end_sharp = crosses ? first_sharp + middle.width : fading.width;
+      std::copy(sharp + first_sharp, sharp + end_sharp, out + first_sharp);
+      const auto fade = [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+          out[k] = mixed(sharp[k], out[k], distance_px(plan.middle, fading.x + k, y));
+      };
+      fade(0, first_sharp);
+      fade(end_sharp, fading.width);
     }
   });
 }

@@ -53,16 +53,14 @@ std::size_t pixels_of(const core::View& view) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
 }
 
-// Returns the values of a rectangle of the drawn part, row by row.
-std::vector<float> cut_out(std::span<const float> values, const core::SubRectangle& part,
-                           const core::SubRectangle& rectangle) {
-  std::vector<float> out;
-  out.reserve(static_cast<std::size_t>(rectangle.width) * static_cast<std::size_t>(rectangle.height));
+// Copies the values of a rectangle of the drawn part, row by row.
+void cut_out(std::span<const float> values, const core::SubRectangle& part, const core::SubRectangle& rectangle,
+             std::vector<float>& out) {
+  out.clear();
   for (int y = rectangle.y; y < rectangle.y + rectangle.height; ++y) {
     const auto row = values.begin() + std::ptrdiff_t{y - part.y} * part.width + (rectangle.x - part.x);
     out.insert(out.end(), row, row + rectangle.width);
   }
-  return out;
 }
 
 class RayRenderer : public core::Renderer {
@@ -134,6 +132,17 @@ class RayRenderer : public core::Renderer {
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
   std::vector<float> inverse_depth_;
+  struct FoveaBuffers {
+    std::vector<float> outer_m;
+    std::vector<float> dense_m;
+    std::vector<base::Rgb> outer;
+    std::vector<base::Rgb> dense;
+    std::size_t bytes() const {
+      return (outer_m.capacity() + dense_m.capacity()) * sizeof(float) +
+             (outer.capacity() + dense.capacity()) * sizeof(base::Rgb);
+    }
+  };
+  FoveaBuffers fovea_;
   std::int64_t tiles_used_ = 0;  // by the last cast
 };
 
@@ -231,7 +240,8 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
   RangeOptions options = range_options(request, planet_->radius_m());
   core::DrawRequest outer = request;
   outer.view = plan.outer;
-  std::vector<float> outer_m(pixels_of(outer.view));
+  std::vector<float>& outer_m = fovea_.outer_m;
+  outer_m.resize(pixels_of(outer.view));
   ColumnWalk::Usage usage = cast_in_bands(outer.view, options, outer_m, image.fallbacks);
   usage.scale_px(core::focal_px(request.view) / core::focal_px(outer.view));
   image.usage.add(usage, planet_->tree());
@@ -245,19 +255,20 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
     image.middle->add(usage, planet_->tree());
     image.usage.add(usage, planet_->tree());
   }
-  spread_ranges(plan, request.view, outer_m, pool_, range_m);
+  if (request.want_range || colour.empty()) spread_ranges(plan, request.view, outer_m, pool_, range_m);
   if (colour.empty()) return;
-  std::vector<base::Rgb> outer_colour(outer_m.size());
+  std::vector<base::Rgb>& outer_colour = fovea_.outer;
+  outer_colour.resize(outer_m.size());
   const std::int64_t nodata_pixels = paint(outer, outer_m, outer_colour, image);
   image.nodata_pixels +=
       nodata_pixels * static_cast<std::int64_t>(colour.size()) / static_cast<std::int64_t>(outer_colour.size());
-  std::vector<base::Rgb> dense_colour;
+  fovea_.dense.clear();
   if (plan.dense.width > 0) {
-    const std::vector<float> dense_m = cut_out(range_m, core::drawn_part(request.view), plan.dense);
-    dense_colour.resize(dense_m.size());
-    paint(dense, dense_m, dense_colour, image);
+    cut_out(range_m, core::drawn_part(request.view), plan.dense, fovea_.dense_m);
+    fovea_.dense.resize(fovea_.dense_m.size());
+    paint(dense, fovea_.dense_m, fovea_.dense, image);
   }
-  merge_colours(plan, request.view, {outer_colour, dense_colour}, pool_, colour);
+  merge_colours(plan, request.view, {outer_colour, fovea_.dense}, pool_, colour);
 }
 
 // Draws a complete image for each sample and takes their mean. The range is that of the pixel's centre.
@@ -462,11 +473,13 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (pixels > kMostKeptPixels) {
     range_m_ = {};
     inverse_depth_ = {};
+    fovea_ = {};
   }
   result.stats.draw_ms = ms_since(start);
-  result.stats.bytes_resident = static_cast<std::int64_t>(
-      caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
-      (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + planet_->tree().bytes());
+  result.stats.bytes_resident =
+      static_cast<std::int64_t>(caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
+                                (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) +
+                                fovea_.bytes() + planet_->tree().bytes());
   finish_paging(request, image, result);
   return result;
 }

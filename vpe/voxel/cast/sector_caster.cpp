@@ -31,17 +31,17 @@ struct RowHints {
   std::vector<int> unresolved;
 };
 
-// Returns what lies in `part` of a rectangle, widened to whole blocks of columns: a block's rays are computed from
-// its first one.
+// Returns what lies in `part` of a rectangle, from the first ray of a block on, as its other rays are computed from
+// that, to the last lane of a vector.
 core::SubRectangle in_whole_blocks(const core::SubRectangle& only, const core::SubRectangle& part) {
-  const auto block = [&](int x) { return (x - part.x) / kTaskColumns * kTaskColumns + part.x; };
+  const auto down = [&](int x, int step) { return (x - part.x) / step * step + part.x; };
   const int x0 = std::max(only.x, part.x);
   const int x1 = std::min(only.x + only.width, part.x + part.width);
   const int y0 = std::max(only.y, part.y);
   const int y1 = std::min(only.y + only.height, part.y + part.height);
   if (x0 >= x1 || y0 >= y1) return {};
-  const int begin = block(x0);
-  const int end = std::min(block(x1 - 1) + kTaskColumns, part.x + part.width);
+  const int begin = down(x0, kTaskColumns);
+  const int end = std::min(down(x1 - 1, kMaxLanes) + kMaxLanes, part.x + part.width);
   return {begin, y0, end - begin, y1 - y0};
 }
 
@@ -69,7 +69,9 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const core::SubRectangle
   samples_.resize(std::max(samples_.size(), plan.sectors().size()));
   for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
     const ViewSector& sector = plan.sectors()[f];
-    samples_[f].resize(static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines));
+    // Grows alone: images of two sizes in turn would be filled with zeros again and again.
+    const std::size_t needed = static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines);
+    if (samples_[f].size() < needed) samples_[f].resize(needed);
     const SectorPlan::Window window = SectorPlan::window(sector, pixels);
     if (window.is_empty()) continue;
     // Rows before the window are resolved too: where a run of rows begins decides how its ranges are rounded.
@@ -181,7 +183,7 @@ void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchP
     const int last = std::min(first + kTaskRows, end_row);
     // In blocks, so that neighbouring rows find their samples and height grids in the caches.
     for (int begin = first_column; begin < first_column + pixels.width; begin += kTaskColumns) {
-      const int end = std::min(begin + kTaskColumns, part.width);
+      const int end = std::min(begin + kTaskColumns, first_column + pixels.width);
       for (int row = first; row < last; ++row) {
         find_hints(plan, part, row, begin, end, hints.a.data(), hints.b.data(), hints.share.data());
         float* const out =

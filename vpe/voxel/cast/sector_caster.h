@@ -27,7 +27,7 @@ class SectorCaster {
   //
   // With `only`, a rectangle of the full image, it casts the samples and rays of that rectangle alone (its width 0:
   // all of the drawn part). Its ranges are the same to the bit; those beside it are left alone, except that it is
-  // widened to whole blocks of columns.
+  // widened to where blocks of columns begin.
   void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
             const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
             const core::SubRectangle& only = {});

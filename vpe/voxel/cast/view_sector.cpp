@@ -163,6 +163,9 @@ SectorPlan::Window SectorPlan::window(const ViewSector& sector, const core::SubR
   const double last = sector.lines;
   window.first_line = static_cast<int>(std::clamp(std::floor(low) - kMargin, 0.0, last));
   window.end_line = static_cast<int>(std::clamp(std::ceil(high) + kMargin + 1, 0.0, last));
+  // Groups of the lines of the whole sector: one line alone would visit the tiles behind the camera too.
+  window.first_line = window.first_line / kMaxLanes * kMaxLanes;
+  window.end_line = std::min((window.end_line + kMaxLanes - 1) / kMaxLanes * kMaxLanes, sector.lines);
   return window;
 }
 
