@@ -285,7 +285,8 @@ void render(RenderArguments& arguments, const Common& common) {
     return result;
   };
   if (arguments.stereo.layout.empty()) {
-    write_image_files(arguments, common, request, draw(request), recipe, *planet, cast);
+    const core::DrawResult result = draw(request);  // sets `cast`
+    write_image_files(arguments, common, request, result, recipe, *planet, cast);
   } else {
     write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw), recipe, planet->meta());
   }
