@@ -70,7 +70,8 @@ nlohmann::json explain_lod(const core::DrawRequest& request, std::span<const lod
   nlohmann::json tiles = nlohmann::json::array();
   for (const lod::TileExplanation& e : cast) tiles.push_back(tile_json(e, by_distance));
   // The key also tells what the file is (vpe/app/cli/file_kind.cpp).
-  nlohmann::json object{{"rule", by_distance ? "distance" : "error"}, {"budget_spent", false}, {"tiles", tiles}};
+  nlohmann::json object{
+      {"rule", by_distance ? "distance" : "error"}, {"budget_spent", false}, {"tiles", tiles}};
   if (by_distance) return object;
   object["tolerance_px"] = request.settings.ray_cell_px;
   if (request.settings.ray_fovea)
