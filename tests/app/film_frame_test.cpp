@@ -11,6 +11,7 @@
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/picture/fingerprint.h"
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
 
 namespace {
 
@@ -98,6 +99,8 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
               : info.key == "overlay.names" ? "/dev/null"
                                             : "Other";
     }
+    if (info.type == vpe::core::SettingType::kNumber && info.max < 1)
+      other = vpe::base::format_number(info.max);
     if (other == info.default_text) other = info.choices.empty() ? "2" : std::string(info.choices.back());
     ASSERT_EQ(inputs.settings.set(info.key, other), "") << info.key;
     EXPECT_TRUE(seen.insert(inputs.fingerprint()).second) << info.key;
