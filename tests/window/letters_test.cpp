@@ -84,6 +84,17 @@ TEST_F(LettersTest, KeysChangeTheScaleAndItIsKept) {
   EXPECT_EQ(scale(), 1.5);
 }
 
+TEST_F(LettersTest, StayAtTheirPlaceWhenEyesAreChosen) {
+  open(1280, 720);
+  settle();
+  const WidgetPlace before = place_of("Letters");
+  click("##eyes");
+  click("##eyes=side by side");
+  settle();
+  ASSERT_TRUE(window_->state().stereo);
+  EXPECT_EQ(place_of("Letters").y0, before.y0);
+}
+
 TEST_F(LettersTest, TheSliderChangesTheScaleWhenItIsReleased) {
   open(1280, 720);
   settle();

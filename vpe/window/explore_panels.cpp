@@ -75,11 +75,11 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
   if (widgets.choose("##eyes", eyes, kEyes)) {
     state.stereo = eyes == 0 ? std::nullopt : std::optional(static_cast<core::StereoLayout>(eyes - 1));
   }
-  if (state.stereo) {
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
-    widgets.number("Eye distance (m)", state.eye_base_m, 0, 1e6, 1, "%.3g",
-                   "0: a thirtieth of the height above ground");
-  }
+  ImGui::BeginDisabled(!state.stereo);
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
+  widgets.number("Eye distance (m)", state.eye_base_m, 0, 1e6, 1, "%.3g",
+                 "0: a thirtieth of the height above ground");
+  ImGui::EndDisabled();
   draw_letters(scale, state, widgets);
 }
 
