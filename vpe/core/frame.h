@@ -121,8 +121,8 @@ struct DrawResult {
   Frame frame;
   FrameStats stats;
   Certificate certificate;
-  // Nothing is being loaded that would change the image of this view or, in frames that do not wait, stand in for the
-  // ground beside it.
+  // True if nothing is being loaded that would change the image of this view or, in frames that do not wait, stand in
+  // for the ground beside it.
   bool settled = true;
   std::vector<MissingTile> missing;   // empty if the image is complete
   std::vector<std::string> failures;  // tiles that cannot be read; a renderer reports each once

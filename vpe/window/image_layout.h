@@ -1,4 +1,4 @@
-// Where the images of the eyes are in the view of the explore window.
+// Places the images of the eyes in the view of the explore window.
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -65,8 +65,8 @@ struct SettingsValues : Appearance, Overlays {
   double lod_centre_weight = 0;
   LevelTable lod_centre_table;
   double lod_interest_weight = 1;  // factor on the levels of regions of interest
-  // What a budget takes, by where tiles are: 1: all lose alike; larger: they lose more levels; 0: none. Away from the
-  // image centre and from regions of interest, at the centre, in such regions (lod/control.h).
+  // Weigh what a budget takes, by where tiles are: away from the image centre and from regions of interest, at the
+  // centre, in such regions (lod/control.h). 1: all lose alike; larger: they lose more levels; 0: none.
   double degrade_distance = 1;
   double degrade_centre = 1;
   double degrade_interest = 1;

@@ -1,4 +1,4 @@
-// What users choose about the mouse.
+// Choices of users about the mouse.
 #pragma once
 
 namespace vpe::explore {

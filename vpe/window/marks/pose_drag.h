@@ -1,4 +1,4 @@
-// Where a pose of a flight goes when it is dragged in the view.
+// Finds where a pose of a flight goes when it is dragged in the view.
 #pragma once
 
 #include <functional>

@@ -47,7 +47,7 @@ struct FileActions {
   bool closes = false;
 };
 
-// What is being made.
+// Names what is being made.
 struct FileWork {
   JobList& jobs;
   std::optional<double> planet;  // share that is done of the planet that replaces the one shown

@@ -29,8 +29,8 @@ class Job {
 // Starts a command of the program, given by its words without the program's name. Throws if it cannot be started.
 using StartJob = std::function<std::unique_ptr<Job>(const std::vector<std::string>& words)>;
 
-// What a job is for: a file that it makes; a file that is shown in a window of its own until that is closed; a planet
-// file that is built of a raster, and opened then.
+// Says what a job does: makes a file; shows one in a window of its own until that is closed; builds the planet file of
+// a raster, which is opened then.
 enum class JobKind { kMakes, kShows, kBuilds };
 
 // Holds the jobs that run or have ended, oldest first. For the window's thread.
