@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace vpe::explore {
@@ -174,6 +175,42 @@ TEST(FlightPlayer, TheUsersLookIsAddedToTheFlights) {
   EXPECT_EQ(player.state().head.pitch_deg, 89);
   player.set_look_offset({std::nan(""), std::numeric_limits<double>::infinity(), 0});
   expect_state(player, 3);
+}
+
+// The oracle is the law of cosines: the offset place is at the distance of the offset, in its direction.
+TEST(FlightPlayer, ThePlatformsOffsetKeepsItsSideOfTheCourse) {
+  FlightPlayer player = player_of();
+  player.set_platform_offset({3000, 400, 4000});
+  for (const double time_s : {0.0, 1.7, 4.0, 6.3, 9.0}) {
+    player.scrub(time_s);
+    const scripts::FlightState own = path_of(kFlight).at(time_s);
+    const scripts::FlightState state = player.state();
+    EXPECT_NEAR(state.pose.alt_m, own.pose.alt_m + 400, 1e-9);
+    const glm::dvec3 from = mars::direction({own.pose.lon_deg, own.pose.lat_deg});
+    const glm::dvec3 to = mars::direction({state.pose.lon_deg, state.pose.lat_deg});
+    const double radius_m = mars::kMarsRadius_m + own.pose.alt_m;
+    EXPECT_NEAR(mars::angle_between_rad(from, to) * radius_m, 5000, 1e-5);
+    const mars::LocalFrame frame = mars::local_frame({own.pose.lon_deg, own.pose.lat_deg});
+    const double bearing_deg =
+        std::atan2(glm::dot(to, frame.east), glm::dot(to, frame.north)) / mars::kRadiansPerDegree;
+    EXPECT_NEAR(std::remainder(bearing_deg - own.pose.yaw_deg - 36.86989764584402, 360.0), 0, 1e-6);
+    EXPECT_EQ(state.pose.pitch_deg, own.pose.pitch_deg);
+    EXPECT_EQ(state.pose.roll_deg, own.pose.roll_deg);
+    EXPECT_EQ(state.camera.position_m, mars::to_camera(state.pose, state.head, mars::kMarsRadius_m).position_m);
+    EXPECT_EQ(player.time_s(), time_s);
+  }
+  player.set_platform_offset({});
+  expect_state(player, 9);
+}
+
+TEST(FlightPlayer, BadOffsetsOfThePlatformDoNoHarm) {
+  FlightPlayer player = player_of();
+  player.set_platform_offset({std::nan(""), std::numeric_limits<double>::infinity(), 0});
+  expect_state(player, 0);
+  player.set_platform_offset({1e300, -1e300, -1e300});
+  EXPECT_EQ(player.platform_offset(), (PlatformOffset{1e7, -1e7, -1e7}));
+  EXPECT_TRUE(std::isfinite(glm::length(player.state().camera.position_m)));
+  EXPECT_GT(glm::length(player.state().camera.position_m), 1e6);
 }
 
 TEST(FlightPlayer, TheUsersSettingsHoldWhileTheFlightPlays) {

@@ -9,6 +9,7 @@
 #include "scripts/flight.h"
 #include "tests/paging/planet_fixture.h"
 #include "vpe/explore/draw_choice.h"
+#include "vpe/explore/steer.h"
 
 namespace vpe::explore {
 namespace {
@@ -205,6 +206,66 @@ TEST(Session, AFieldOfViewByHandInAFlightHoldsUntilTheFlightIsLeft) {
   EXPECT_EQ(session.view().fov_deg, by_hand_deg);
   ASSERT_EQ(session.follow(false), "");
   EXPECT_NE(session.view().fov_deg, by_hand_deg);  // the flight's again
+}
+
+scripts::Flight level_flight() {
+  return *scripts::parse_flight(
+              "flight 1\nat 0 pose lon=0 lat=0 alt=20000 yaw=90\nat 100 pose lon=2 lat=0 alt=20000 yaw=90\n",
+              "")
+              .flight;
+}
+
+TEST(Session, MovingByHandLeavesTheCourseOfAFlightThatPlays) {
+  Session session = session_at({10, 0, 50000, 0, 0, 0});
+  Session alone = session_at({10, 0, 50000, 0, 0, 0});
+  for (Session* s : {&session, &alone}) {
+    ASSERT_EQ(s->flights().load(level_flight()), "");
+    ASSERT_EQ(s->follow(true), "");
+  }
+  Controls left;
+  left.right = -1;
+  left.up = 0.5;
+  for (int n = 0; n < 50; ++n) {
+    session.advance(0.02, left);
+    alone.advance(0.02, {});
+  }
+  EXPECT_TRUE(session.follows_flight());
+  EXPECT_TRUE(session.player()->is_playing());
+  EXPECT_EQ(session.player()->time_s(), alone.player()->time_s());
+  EXPECT_GT(session.pose().alt_m, alone.pose().alt_m + 1000);
+  EXPECT_GT(session.pose().lat_deg, 0.05) << "north is to the left of a course to the east";
+  EXPECT_NEAR(session.pose().lon_deg, alone.pose().lon_deg, 1e-6);
+  // The offset stays, also when the flight is edited, paused and scrubbed.
+  const double lat_deg = session.pose().lat_deg;
+  for (int n = 0; n < 50; ++n) session.advance(0.02, {});
+  EXPECT_NEAR(session.pose().lat_deg, lat_deg, 1e-9);
+  ASSERT_EQ(session.flights().editor()->scale_times(2), "");
+  ASSERT_EQ(session.follow(false), "");
+  session.scrub(50);
+  EXPECT_NEAR(session.pose().lat_deg, lat_deg, 1e-9);
+  session.leave_flight();
+  EXPECT_NEAR(session.pose().lat_deg, lat_deg, 1e-9);
+  ASSERT_EQ(session.follow(false), "");
+  EXPECT_EQ(session.pose().lat_deg, 0);
+}
+
+TEST(Session, AnOffsetOfThePlatformStaysAboveTheGround) {
+  Session session = session_at({10, 0, 50000, 0, 0, 0});
+  ASSERT_EQ(session.flights().load(level_flight()), "");
+  ASSERT_EQ(session.follow(true), "");
+  Controls down;
+  down.up = -1;
+  for (int n = 0; n < 1000; ++n) {
+    session.advance(0.02, down);
+    ASSERT_GE(session.height_m(), SteerLimits::kClearance_m - 1e-6) << n;
+  }
+  EXPECT_LT(session.height_m(), 10);
+  Controls up;
+  up.up = 1;
+  session.advance(0.02, up);
+  const double before_m = session.height_m();
+  for (int n = 0; n < 25; ++n) session.advance(0.02, up);
+  EXPECT_GT(session.height_m(), before_m + 0.5) << "a motion up takes effect at once";
 }
 
 TEST(DrawChooser, AFlightDecidesWhatTheUserDoesNotChange) {

@@ -339,6 +339,29 @@ TEST_F(ExploreWindowTest, TheFlightPanelStaysAtItsPlace) {
   EXPECT_EQ(place_of("Save").y0, before.y0);
 }
 
+TEST_F(ExploreWindowTest, KeysMoveThePlatformWhileAFlightPlays) {
+  open();
+  click("Flight");
+  const scripts::ParsedFlight parsed = scripts::parse_flight(
+      "flight 1\nat 0 pose lon=0 lat=0 alt=200000 yaw=90\nat 1000 pose lon=5 lat=0 alt=200000 yaw=90\n", "");
+  ASSERT_EQ(window_->session().flights().load(*parsed.flight), "");
+  ASSERT_EQ(window_->session().follow(true), "");
+  iterate(3);
+  const WidgetPlace before = place_of("Save");
+  click(600, 240);  // the view has the focus
+  robot_->key_down("a");
+  iterate(10);
+  robot_->key_up("a");
+  iterate(3);
+  EXPECT_TRUE(window_->session().follows_flight());
+  EXPECT_GT(window_->session().pose().lat_deg, 0.001);
+  EXPECT_EQ(place_of("Save").y0, before.y0);
+  click("On course");
+  iterate(3);
+  EXPECT_NEAR(window_->session().pose().lat_deg, 0, 1e-9);
+  EXPECT_TRUE(window_->session().follows_flight());
+}
+
 // A program that is killed leaves a copy, and the next one offers it.
 TEST_F(ExploreWindowTest, AnUnsavedFlightOutlivesTheProgram) {
   open();

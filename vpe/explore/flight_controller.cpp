@@ -72,6 +72,7 @@ FlightPlayer* FlightController::player(double exaggeration) {
     player_->set_loop(before->loops());
     player_->scrub(before->time_s());
     player_->set_look_offset(before->look_offset());
+    player_->set_platform_offset(before->platform_offset());
     player_->keep_changes_of(*before);
     if (before->is_playing()) player_->play();
   }

@@ -42,8 +42,8 @@ class FlightController {
   // Returns the editor, or null if there is no flight.
   FlightEditor* editor() { return editor_ ? &*editor_ : nullptr; }
   const FlightEditor* editor() const { return editor_ ? &*editor_ : nullptr; }
-  // Returns a player of the flight as edited. Remakes it after an edit, but keeps its time, speed, loop, look
-  // offset and what the user has changed. Returns null if there is no flight or it cannot be played (problem()).
+  // Returns a player of the flight as edited. Remakes it after an edit, but keeps its time, speed, loop, offsets
+  // and what the user has changed. Returns null if there is no flight or it cannot be played (problem()).
   FlightPlayer* player(double exaggeration);
   // Returns why the flight cannot be played, or "".
   const std::string& problem() const { return problem_; }

@@ -4,11 +4,21 @@
 #include <cmath>
 #include <utility>
 
+#include "vpe/explore/steer.h"
+
 namespace vpe::explore {
 
 namespace {
 
 double finite(double value) { return std::isfinite(value) ? value : 0.0; }
+
+double within_reach_m(double value) {
+  return std::clamp(finite(value), -FlightPlayerLimits::kFarthest_m, FlightPlayerLimits::kFarthest_m);
+}
+
+bool is_ahead(const mars::HeadAngles& head) {
+  return head.yaw_deg == 0 && head.pitch_deg == 0 && head.roll_deg == 0;
+}
 
 }  // namespace
 
@@ -56,9 +66,18 @@ void FlightPlayer::add_look_offset(double yaw_deg, double pitch_deg, double roll
   set_look_offset({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
 }
 
+void FlightPlayer::set_platform_offset(const PlatformOffset& offset) {
+  platform_ = {within_reach_m(offset.right_m), within_reach_m(offset.up_m), within_reach_m(offset.forward_m)};
+}
+
 scripts::FlightState FlightPlayer::state_at(double time_s) const {
   scripts::FlightState state = path_.at(std::clamp(time_s, 0.0, duration_s()));
-  if (offset_.yaw_deg == 0 && offset_.pitch_deg == 0 && offset_.roll_deg == 0) return state;
+  const bool is_on_course = platform_ == PlatformOffset{};
+  if (is_on_course && is_ahead(offset_)) return state;
+  if (!is_on_course) {
+    state.pose = carried(state.pose, platform_.right_m, platform_.forward_m, radius_m_);
+    state.pose.alt_m = std::max(state.pose.alt_m + platform_.up_m, -0.5 * radius_m_);
+  }
   state.head = {mars::normalize_lon_deg(state.head.yaw_deg + offset_.yaw_deg),
                 std::clamp(state.head.pitch_deg + offset_.pitch_deg, -90.0, 90.0),
                 mars::normalize_lon_deg(state.head.roll_deg + offset_.roll_deg)};

@@ -1,4 +1,5 @@
-// Playback of a flight: play, pause, scrub, speed, loop. The user can look around and zoom at the same time.
+// Playback of a flight: play, pause, scrub, speed, loop. The user can look around, zoom and fly beside the flight's
+// course at the same time.
 //
 // The player has no clock: the caller passes the elapsed time to advance(). The state at a time is that of
 // scripts::Path and does not depend on how that time was reached.
@@ -16,6 +17,17 @@ namespace vpe::explore {
 struct FlightPlayerLimits {
   static constexpr double kSlowest = 0.01;  // of the speed's absolute value
   static constexpr double kFastest = 100;
+  static constexpr double kFarthest_m = 1e7;  // of each member of a platform's offset
+};
+
+// Holds how far the user has moved the platform off the flight's course, metres in the platform's level frame: right
+// and forward are along the sphere, forward in the direction of its heading.
+struct PlatformOffset {
+  double right_m = 0;
+  double up_m = 0;
+  double forward_m = 0;
+
+  bool operator==(const PlatformOffset&) const = default;
 };
 
 // Plays one path. For one thread at a time.
@@ -59,9 +71,15 @@ class FlightPlayer {
   void reset_look_offset() { set_look_offset({}); }
   const mars::HeadAngles& look_offset() const { return offset_; }
 
-  // Returns the state now. Without an offset it equals Path::at() bit by bit.
+  // Sets the user's offset of the platform, which is added to the flight's pose in the frame of that pose: on a course
+  // that turns, an offset to the right stays on the right. Regards no ground. Clamps each member to
+  // FlightPlayerLimits; numbers that are not finite count as 0.
+  void set_platform_offset(const PlatformOffset& offset);
+  const PlatformOffset& platform_offset() const { return platform_; }
+
+  // Returns the state now. Without offsets it equals Path::at() bit by bit.
   scripts::FlightState state() const { return state_at(time_s_); }
-  // Returns the state at another time, clamped to the flight, with the offset of now.
+  // Returns the state at another time, clamped to the flight, with the offsets of now.
   scripts::FlightState state_at(double time_s) const;
 
   // Returns the settings now: `base` (those before the flight), then the flight's up to and including this
@@ -99,6 +117,7 @@ class FlightPlayer {
   bool playing_ = false;
   bool loop_ = false;
   mars::HeadAngles offset_;
+  PlatformOffset platform_;
   std::map<std::string, std::string> kept_;
   struct Kept {
     bool fov = false;

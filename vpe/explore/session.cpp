@@ -164,6 +164,7 @@ void Session::leave_flight() {
   if (FlightPlayer* flight = player(); flight != nullptr) {
     flight->pause();
     flight->reset_look_offset();
+    flight->set_platform_offset({});
     flight->release_settings();
     flight->release_view();
   }
@@ -191,10 +192,27 @@ void Session::take_flight_state(const mars::HeadAngles& tracker) {
     return;
   }
   const scripts::FlightState state = flight->state();
-  pose_ = state.pose;
-  look_ = added(state.head, tracker);
   follow_settings();
   follow_fov();
+  pose_ = flight->platform_offset() == PlatformOffset{} ? state.pose : kept_clear(state.pose, ground_);
+  look_ = added(state.head, tracker);
+}
+
+// Moves at the speed of a camera that flies by hand. Down ends at the ground: what lies below it is not added, so that
+// a motion up takes effect at once.
+void Session::move_platform(FlightPlayer& flight, const Controls& controls, double dt_s) {
+  PlatformOffset offset = flight.platform_offset();
+  const double step_m = full_speed_m_s(pose_, ground_) * controls.speed * dt_s;
+  offset.right_m += controls.right * step_m;
+  offset.up_m += controls.up * step_m;
+  offset.forward_m += controls.forward * step_m;
+  flight.set_platform_offset(offset);
+  const mars::Pose pose = flight.state().pose;
+  const double raised_m = kept_clear(pose, ground_).alt_m - pose.alt_m;
+  if (controls.up != 0 && raised_m != 0) {
+    offset.up_m += raised_m;
+    flight.set_platform_offset(offset);
+  }
 }
 
 void Session::stop() {
@@ -299,7 +317,10 @@ void Session::advance(double dt_s, const Controls& controls, const mars::HeadAng
       flight->add_look_offset(controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
                               controls.pitch_up * SteerLimits::kRotation_deg_s * dt,
                               controls.roll_right * SteerLimits::kRoll_deg_s * dt);
-      if (flight->is_playing()) flight->advance(std::max(dt_s, 0.0));
+      if (flight->is_playing()) {
+        flight->advance(std::max(dt_s, 0.0));
+        if (moves) move_platform(*flight, controls, dt);
+      }
       take_flight_state(tracker);
       return;
     }

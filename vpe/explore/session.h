@@ -121,7 +121,8 @@ class Session {
 
   // Gives access to the flight: edited here, played by follow(). While it is followed, the camera is on its
   // platform and has its field of view if it has one, and drags and rotations add to its look without disturbing
-  // it. Moving by hand while it is paused leaves it. Playing or scrubbing it changes walk and drive to orbit.
+  // it. Moving while it plays adds to the platform's offset, which stays above the ground; moving by hand while it is
+  // paused leaves it. Playing or scrubbing it changes walk and drive to orbit.
   FlightController& flights() { return flights_; }
   const FlightController& flights() const { return flights_; }
   FlightPlayer* player() { return flights_.player(shown_settings_.values().exaggeration); }
@@ -175,6 +176,7 @@ class Session {
   void look_around(double yaw_deg, double pitch_deg);
   void go_rotated(double yaw_deg, double pitch_deg, double roll_deg);
   void take_flight_state(const mars::HeadAngles& tracker);
+  void move_platform(FlightPlayer& flight, const Controls& controls, double dt_s);
   void follow_settings();
   void follow_fov();
 

@@ -110,6 +110,14 @@ void FlightPanel::draw_player(explore::Session& session, Widgets& widgets) {
     ImGui::BeginDisabled(!looks_aside);
     if (widgets.button("Look ahead", "return to the flight's own direction")) player->reset_look_offset();
     ImGui::EndDisabled();
+    ImGui::SameLine();
+    const bool is_beside = player->platform_offset() != explore::PlatformOffset{};
+    ImGui::BeginDisabled(!is_beside);
+    if (widgets.button(
+            "On course",
+            "return to the flight's own course; the keys that move the camera leave it while the flight plays"))
+      player->set_platform_offset({});
+    ImGui::EndDisabled();
   } else if (!session.flights().problem().empty()) {
     ImGui::TextWrapped("%s", session.flights().problem().c_str());
   }
