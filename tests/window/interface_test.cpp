@@ -69,6 +69,17 @@ TEST(StatusLineTest, TextsHaveNoNegativeZeroAndNoFullCircle) {
   EXPECT_EQ(hemisphere_text({0, -0.000001}, R::kSigned), "0.00000° N  0.00000° E");
 }
 
+TEST(StatusLineTest, WhatDoesNotFitIsLeftOutPartByPart) {
+  const auto width = [](const std::string& text) { return static_cast<double>(text.size()); };
+  const std::string text = "cursor  1 N  2 E   -3127.7 m   slope 6 deg";
+  EXPECT_EQ(fitting_parts(text, 100, width), text);
+  EXPECT_EQ(fitting_parts(text, static_cast<double>(text.size()), width), text);
+  EXPECT_EQ(fitting_parts(text, static_cast<double>(text.size()) - 1, width), "cursor  1 N  2 E   -3127.7 m");
+  EXPECT_EQ(fitting_parts(text, 27, width), "cursor  1 N  2 E");
+  EXPECT_EQ(fitting_parts(text, -5, width), "cursor  1 N  2 E");
+  EXPECT_EQ(fitting_parts("", 0, width), "");
+}
+
 TEST_F(InterfaceTest, ASearchedPlaceIsFlownTo) {
   add_places();
   open();

@@ -48,7 +48,7 @@ void ExploreWindow::draw_status() {
   const double camera_x = std::max(quality_x - gap - width_of(camera), gap);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(corner, at(static_cast<double>(ImGui::GetWindowPos().x) + camera_x - gap / 2, 1e6), true);
-  ImGui::TextUnformatted(cursor_text_.c_str());
+  ImGui::TextUnformatted(fitting_parts(cursor_text_, camera_x - gap, width_of).c_str());
   widgets_.record("cursor line");
   ImGui::PopClipRect();
   ImGui::SameLine(static_cast<float>(camera_x));

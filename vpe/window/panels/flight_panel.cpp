@@ -82,7 +82,7 @@ double FlightPanel::ground_speed_m_s(const explore::Session& session) const {
 
 void FlightPanel::draw_empty(explore::Session& session, FlightActions& actions, Widgets& widgets) {
   draw_file(session, actions, widgets);
-  ImGui::TextDisabled("Ctrl + click on the map adds a waypoint there");
+  draw_hint("Ctrl + click on the map adds a waypoint there.");
   if (abandoned_.empty()) return;
   if (widgets.button("Restore", ("open the unsaved flight " + abandoned_.front().string()).c_str()))
     actions.restore = abandoned_.front();

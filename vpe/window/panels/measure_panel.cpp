@@ -133,7 +133,7 @@ void MeasurePanel::draw_place(MeasureActions& actions, Widgets& widgets) {
     if (place_text_.empty()) place_reply_.clear();
   }
   if (place_reply_.empty())
-    ImGui::TextDisabled("Paste longitude, latitude and press Enter.");
+    draw_hint("Paste longitude, latitude and press Enter.");
   else
     coloured(place_read_ ? kSuccessColour : kErrorColour, place_reply_);
   ImGui::BeginDisabled(!place_read_);
@@ -145,7 +145,7 @@ void MeasurePanel::draw_place(MeasureActions& actions, Widgets& widgets) {
 
 void MeasurePanel::draw_points(Widgets& widgets) {
   if (places_.empty()) {
-    ImGui::TextDisabled("M adds the point under the cursor. Two points make a path.");
+    draw_hint("M adds the point under the cursor. Two points make a path.");
     return;
   }
   std::optional<std::size_t> gone;

@@ -36,6 +36,16 @@ std::string cursor_text(const explore::ReadOut& read_out, explore::LongitudeRang
   return text;
 }
 
+std::string fitting_parts(std::string text, double room_px,
+                          const std::function<double(const std::string&)>& width_px) {
+  while (width_px(text) > room_px) {
+    const std::size_t end = text.rfind("   ");
+    if (end == std::string::npos) break;
+    text.resize(end);
+  }
+  return text;
+}
+
 std::string camera_text(const explore::Session& session, explore::LongitudeRange range) {
   const mars::Pose& pose = session.pose();
   return hemisphere_text({pose.lon_deg, pose.lat_deg}, range) + "   " + panel_length_text(session.height_m()) +

@@ -1,6 +1,7 @@
 // The line below the view: the place under the cursor, the camera, and how the image was drawn.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,11 @@ std::string attitude_text(const mars::Pose& pose);
 
 // Describes the place under the cursor: coordinates, elevation, slope, source and spacing of its posts. Pure.
 std::string cursor_text(const explore::ReadOut& read_out, explore::LongitudeRange range);
+
+// Returns a text without the last of its parts, which three blanks separate, until it is at most so wide. The first part
+// stays. Pure if width_px is.
+std::string fitting_parts(std::string text, double room_px,
+                          const std::function<double(const std::string&)>& width_px);
 
 // Describes the camera: place, height above the ground, attitude. Pure.
 std::string camera_text(const explore::Session& session, explore::LongitudeRange range);

@@ -39,6 +39,12 @@ ValueTable::ValueTable(const char* id) : open_(ImGui::BeginTable(id, 2)) {
   ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
 }
 
+void draw_hint(const char* text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  ImGui::TextWrapped("%s", text);
+  ImGui::PopStyleColor();
+}
+
 ValueTable::~ValueTable() {
   if (open_) ImGui::EndTable();
 }

@@ -51,6 +51,9 @@ std::string formatted(const char* format, Args... args) {
   return text;
 }
 
+// Draws what a user can do here, in subdued letters and as many lines as the panel's width needs.
+void draw_hint(const char* text);
+
 // Draws a table of two columns, a label and a value in each row, while it is in scope.
 //
 // Typical usage:
