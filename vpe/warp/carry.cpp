@@ -1,0 +1,78 @@
+#include "vpe/warp/carry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "vpe/warp/carry_cells.h"
+#include "vpe/warp/carry_rows.h"
+#include "vpe/warp/moved_pixels.h"
+
+namespace vpe::warp {
+
+namespace {
+
+void check(const core::View& from, const core::Frame& frame, const core::View& to,
+           const CarryOptions& options) {
+  if (const std::string problem = check_carry(from, to); !problem.empty()) throw std::invalid_argument(problem);
+  if (!(options.gap_px >= 0 && options.gap_px <= CarryLimits::kMaxGap_px))
+    throw std::invalid_argument("the widest gap must be 0 to 16 pixels");
+  if (!(options.most_added_px >= 0))
+    throw std::invalid_argument("the largest added error must be 0 or more pixels");
+  if (!(options.nearest_m >= 0)) throw std::invalid_argument("the nearest distance must be 0 or more metres");
+  const glm::ivec2 drawn = core::drawn_size(from);
+  const std::size_t count = static_cast<std::size_t>(drawn.x) * static_cast<std::size_t>(drawn.y);
+  if (frame.range_m.size() != count) throw std::invalid_argument("the image to carry has no ranges");
+  if (!frame.colour.empty() && frame.colour.size() != count)
+    throw std::invalid_argument("the image to carry has colours of another size");
+}
+
+}  // namespace
+
+std::string check_carry(const core::View& from, const core::View& to) {
+  for (const core::View* view : {&from, &to}) {
+    if (std::string problem = core::check(*view); !problem.empty()) return problem;
+    if (view->projection != core::Projection::kPerspective)
+      return "images are carried between perspective views only; draw panoramas in full (--stereo-method full)";
+  }
+  return {};
+}
+
+Carrier::Carrier() = default;
+Carrier::~Carrier() = default;
+Carrier::Carrier(Carrier&&) noexcept = default;
+Carrier& Carrier::operator=(Carrier&&) noexcept = default;
+
+void Carrier::carry(const core::View& from, const core::Frame& frame, const core::View& to,
+                    const CarryOptions& options, base::ThreadPool& pool, CarriedImage& into) {
+  check(from, frame, to, options);
+  const glm::ivec2 size = core::drawn_size(to);
+  const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  into.width = size.x;
+  into.height = size.y;
+  into.colour.resize(frame.colour.empty() ? 0 : pixels);
+  into.range_m.resize(pixels);
+  into.origin.resize(pixels);
+  into.added_px = 0;
+  if (options.gap_px == 0) {
+    std::ranges::fill(into.colour, base::Rgb{});
+    std::ranges::fill(into.range_m, 0.0F);
+    std::ranges::fill(into.origin, Origin::kOpen);
+  } else if (rows_correspond(from, to)) {
+    carry_rows(from, frame, to, options, pool, into);
+  } else {
+    if (!pixels_) pixels_ = std::make_unique<MovedPixels>();
+    carry_cells(from, frame, to, options, pool, *pixels_, into);
+  }
+  into.pixels = {};
+  for (const Origin origin : into.origin) ++into.pixels[static_cast<std::size_t>(origin)];
+}
+
+CarriedImage carry(const core::View& from, const core::Frame& frame, const core::View& to,
+                   const CarryOptions& options, base::ThreadPool& pool) {
+  CarriedImage image;
+  Carrier().carry(from, frame, to, options, pool, image);
+  return image;
+}
+
+}  // namespace vpe::warp
