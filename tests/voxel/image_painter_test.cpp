@@ -20,7 +20,6 @@ const mars::LonLat kPlace = mars::lon_lat(test_support::kWavyMiddle);
 
 struct Painted {
   std::vector<vpe::base::Rgb> colour;
-  std::vector<float> inverse_depth;
   std::int64_t nodata_count = 0;
 };
 
@@ -69,11 +68,10 @@ class PaintedImage : public ::testing::Test {
   }
 
   static Painted paint(ImagePainter& painter, const core::DrawRequest& of, const std::vector<float>& range_m,
-                       vpe::base::ThreadPool& pool, bool depths = false) {
+                       vpe::base::ThreadPool& pool) {
     Painted out;
     out.colour.resize(range_m.size());
-    out.inverse_depth.resize(depths ? range_m.size() : 0);
-    out.nodata_count = painter.paint(of, range_m, out.colour, out.inverse_depth, pool);
+    out.nodata_count = painter.paint(of, range_m, out.colour, {}, pool);
     return out;
   }
 
@@ -160,7 +158,7 @@ TEST_F(PaintedImage, OneColourBehindAnyAirAsDefined) {
       r.settings.background = sky;
       r.settings.haze_visibility_m = visibility_m;
       const auto expected = definition.paint(r, range_m, pool_);
-      const Painted painted = paint(painter, r, range_m, pool_, true);
+      const Painted painted = paint(painter, r, range_m, pool_);
       EXPECT_EQ(apart(painted.colour, expected, 1), 0U) << visibility_m;
       EXPECT_EQ(paint(painter, r, range_m, pool_).colour, painted.colour) << visibility_m;
       EXPECT_EQ(painted.nodata_count, 0);
@@ -217,34 +215,39 @@ TEST_F(PaintedImage, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
     r.settings.colourise = true;
     const auto range_m = ranges(surface, r);
     use_instructions(0);
-    const Painted first = paint(reference, r, range_m, one, true);
-    EXPECT_EQ(paint(poor, r, range_m, three, true).colour, first.colour);
+    const Painted first = paint(reference, r, range_m, one);
+    EXPECT_EQ(paint(poor, r, range_m, three).colour, first.colour);
     EXPECT_LE(poor.bytes_resident(), std::size_t{1} << 20);
     int sets = 0;
     const std::int64_t all = hwy::SupportedTargets();
     for (std::int64_t left = all; left != 0; left &= left - 1) {
       use_instructions(left & -left);
-      const Painted again = paint(reference, r, range_m, pool_, true);
+      const Painted again = paint(reference, r, range_m, pool_);
       EXPECT_EQ(again.colour, first.colour) << hwy::TargetName(left & -left);
-      EXPECT_EQ(again.inverse_depth, first.inverse_depth) << hwy::TargetName(left & -left);
       ++sets;
     }
     EXPECT_GE(sets, 2);
   }
 }
 
-TEST_F(PaintedImage, InverseDepthsAreAlongTheCamerasAxis) {
+TEST_F(PaintedImage, OnlyWantedPixelsArePainted) {
   const paging::Surface surface(planet_, kMemory);
   ImagePainter painter(planet_, kMemory);
-  const core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 30000, 40, -10, 30}, 70, 50);
-  const auto range_m = ranges(surface, r);
-  const Painted painted = paint(painter, r, range_m, pool_, true);
-  for (int y = 0; y < 50; ++y) {
-    for (int x = 0; x < 70; ++x) {
-      const auto at = static_cast<std::size_t>(70 * y + x);
-      const double along = glm::dot(core::pixel_ray(r.view, x + 0.5, y + 0.5), r.view.camera.axes.forward);
-      const double wanted = std::isinf(range_m[at]) ? 0 : 1 / (static_cast<double>(range_m[at]) * along);
-      ASSERT_NEAR(static_cast<double>(painted.inverse_depth[at]), wanted, 3e-7 * wanted);
+  Random random(23);
+  for (const core::Mode mode : {core::Mode::kTextured, core::Mode::kLit}) {
+    core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 30000, 40, -10, 30}, 101, 50);
+    r.settings.mode = mode;
+    r.settings.haze_visibility_m = 3e5;
+    const auto range_m = ranges(surface, r);
+    const Painted all = paint(painter, r, range_m, pool_);
+    for (const double share : {0.0, 0.01, 0.3, 1.0}) {
+      std::vector<std::uint8_t> wanted(range_m.size());
+      for (std::uint8_t& w : wanted) w = random.uniform(0, 1) < share ? 1 : 0;
+      const vpe::base::Rgb before{1, 2, 3};
+      std::vector<vpe::base::Rgb> colour(range_m.size(), before);
+      painter.paint(r, range_m, colour, wanted, pool_);
+      for (std::size_t n = 0; n < colour.size(); ++n)
+        ASSERT_EQ(colour[n], wanted[n] != 0 ? all.colour[n] : before) << n << " of " << share;
     }
   }
 }

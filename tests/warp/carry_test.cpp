@@ -228,6 +228,26 @@ TEST(Carry, WhatStandsBesideTheFirstImageIsNotMissed) {
   EXPECT_EQ(carry(left, frame, right, {.nearest_m = 0}, pool).count(Origin::kOpen), 160 * 120);
 }
 
+TEST(Carry, OpenPixelsBeginBeforeTheGround) {
+  base::ThreadPool pool(2);
+  for (const Scene& scene : {comb(), hills()}) {
+    const core::View from = view_at({3, 0, 22}, 4, -6);
+    const core::Frame frame = image_of(scene, from);
+    std::int64_t known = 0;
+    for (const core::View& to : {core::eye_view(from, 2, std::nullopt), core::eye_view(from, -2, std::nullopt),
+                                 view_at({4.5, 1, 23}, 6, -7, 5)}) {
+      const CarriedImage carried = carry(from, frame, to, {.nearest_m = 15}, pool);
+      const core::Frame truth = image_of(scene, to);
+      for (std::size_t n = 0; n < carried.origin.size(); ++n) {
+        if (carried.origin[n] != Origin::kOpen || carried.range_m[n] == 0) continue;
+        ++known;
+        ASSERT_GE(truth.range_m[n], 0.96F * carried.range_m[n]) << n;
+      }
+    }
+    EXPECT_GT(known, 20);
+  }
+}
+
 TEST(Carry, ThreadsChangeNoBit) {
   base::ThreadPool one(1);
   base::ThreadPool many(5);

@@ -21,6 +21,7 @@
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/below_ground.h"
 #include "vpe/core/image/edge_filter.h"
+#include "vpe/core/ray_lengths.h"
 #include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
 #include "vpe/voxel/downsampled_view.h"
@@ -28,6 +29,7 @@
 #include "vpe/voxel/foveated_image.h"
 #include "vpe/voxel/frame_prefetcher.h"
 #include "vpe/voxel/paint/image_painter.h"
+#include "vpe/voxel/pixel_caster.h"
 #include "vpe/voxel/tile_loader.h"
 
 namespace vpe::voxel {
@@ -63,7 +65,7 @@ void cut_out(std::span<const float> values, const core::SubRectangle& part, cons
   }
 }
 
-class RayRenderer : public core::Renderer {
+class RayRenderer : public core::PixelRenderer {
  public:
   RayRenderer(std::shared_ptr<const paging::PlanetFile> planet, const RayOptions& options)
       : planet_(std::move(planet)),
@@ -73,9 +75,12 @@ class RayRenderer : public core::Renderer {
         max_image_bytes_(options.max_image_bytes),
         explained_(options.explained),
         prefetcher_(caster_, painter_, pool_, options.memory_bytes),
-        loader_(caster_, painter_, options.threads) {}
+        loader_(caster_, painter_, options.threads),
+        pixel_caster_(caster_) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override;
+  core::DrawResult draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
+                               core::Frame& frame) override;
 
  private:
   static std::size_t share(const RayOptions& options, double part) {
@@ -126,6 +131,7 @@ class RayRenderer : public core::Renderer {
   std::vector<lod::TileExplanation>* explained_;
   FramePrefetcher prefetcher_;
   TileLoader loader_;
+  PixelCaster pixel_caster_;
   SectorCaster hint_sectors_;
   std::optional<double> exaggeration_;        // of the last image
   std::unordered_set<std::string> reported_;  // failures
@@ -214,13 +220,15 @@ std::int64_t RayRenderer::paint(const core::DrawRequest& request, std::span<cons
                                 std::span<base::Rgb> colour, Image& image) {
   const bool smooth = request.settings.smooth_edges && request.settings.samples <= 1 &&
                       request.view.projection == core::Projection::kPerspective;
-  inverse_depth_.resize(smooth ? range_m.size() : 0);
-  const std::int64_t nodata_pixels =
-      painter_.paint(request, range_m, colour, inverse_depth_, pool_, &image.reading);
+  const std::int64_t nodata_pixels = painter_.paint(request, range_m, colour, {}, pool_, &image.reading);
   image.absent_colours.insert(image.absent_colours.end(), image.reading.absent.begin(),
                               image.reading.absent.end());
   const glm::ivec2 size = core::drawn_size(request.view);
-  if (smooth) core::smooth_edges(colour, inverse_depth_, size.x, size.y, pool_);
+  if (smooth) {
+    inverse_depth_.resize(range_m.size());
+    core::inverse_depths(request.view, range_m, pool_, inverse_depth_);
+    core::smooth_edges(colour, inverse_depth_, size.x, size.y, pool_);
+  }
   return nodata_pixels;
 }
 
@@ -484,9 +492,44 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   return result;
 }
 
+core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
+                                          core::Frame& frame) {
+  if (const std::string trouble = core::check(request.view); !trouble.empty())
+    throw std::runtime_error(trouble);
+  if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
+  const std::size_t pixels = pixels_of(request.view);
+  if (request.view.projection != core::Projection::kPerspective || request.settings.samples > 1)
+    throw std::invalid_argument("single pixels are drawn of perspective views with one sample a pixel");
+  if (wanted.is_wanted.size() != pixels || wanted.clear_m.size() != pixels || frame.range_m.size() != pixels ||
+      (request.want_colour && frame.colour.size() != pixels))
+    throw std::invalid_argument("the pixels to draw have another size than the image");
+  core::DrawRequest for_planet = request;
+  core::for_body(for_planet.settings, planet_->meta().body);
+  planet_->tree().require_drawable(request.settings.exaggeration);
+  prefetcher_.stop();
+  const bool reads_all = loader_.begin(for_planet);
+  const auto start = Clock::now();
+  Image image(caster_.store(), for_planet, reading_rule(for_planet, reads_all));
+  core::DrawResult result;
+  image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted, pool_,
+                                   frame.range_m, &image.fallbacks);
+  result.stats.select_ms = ms_since(start);
+  if (request.want_colour) {
+    image.nodata_pixels =
+        painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_, &image.reading);
+    image.absent_colours = image.reading.absent;
+  }
+  result.certificate = certify(for_planet, frame, image);
+  result.stats.tiles_by_level = image.usage.tiles_by_level;
+  result.stats.tiles_drawn = result.certificate.tiles_drawn;
+  result.stats.draw_ms = ms_since(start);
+  finish_paging(for_planet, image, result);
+  return result;
+}
+
 }  // namespace
 
-std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
+std::unique_ptr<core::PixelRenderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options) {
   return std::make_unique<RayRenderer>(std::move(planet), options);
 }

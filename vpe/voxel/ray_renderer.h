@@ -28,7 +28,7 @@
 
 #include "lod/explain.h"
 #include "paging/planet/planet_file.h"
-#include "vpe/core/frame.h"
+#include "vpe/core/pixel_renderer.h"
 #include "vpe/voxel/ray_request.h"
 
 namespace vpe::voxel {
@@ -76,7 +76,7 @@ struct RayOptions {
 // once. A tile that is not there, or cannot be read, is cast and painted with the posts of its nearest ancestor
 // that is; the certificate's bounds include it. draw() throws std::runtime_error for a view or an appearance
 // that it cannot draw, and paging::PlanetError where not even a root can be read.
-std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
+std::unique_ptr<core::PixelRenderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options = {});
 
 }  // namespace vpe::voxel

@@ -27,6 +27,31 @@ void check(const core::View& from, const core::Frame& frame, const core::View& t
     throw std::invalid_argument("the image to carry has colours of another size");
 }
 
+// Makes sure that the clear ranges of open pixels end before what is around them: silhouettes may reach up to two pixels
+// farther than the places of the first image's pixels.
+void keep_clear_of_silhouettes(base::ThreadPool& pool, CarriedImage& image) {
+  constexpr int kAround = 2;
+  constexpr int kRows = 16;
+  const std::vector<float> before = image.range_m;
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+  };
+  pool.run(static_cast<std::size_t>((image.height + kRows - 1) / kRows), [&](std::size_t task) {
+    const int first = static_cast<int>(task) * kRows;
+    for (int y = first; y < std::min(first + kRows, image.height); ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        const std::size_t n = index(x, y);
+        if (image.origin[n] != Origin::kOpen || before[n] == 0) continue;
+        float clear_m = before[n];
+        for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, image.height - 1); ++v)
+          for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, image.width - 1); ++u)
+            if (before[index(u, v)] > 0) clear_m = std::min(clear_m, before[index(u, v)]);
+        image.range_m[n] = clear_m;
+      }
+    }
+  });
+}
+
 }  // namespace
 
 std::string check_carry(const core::View& from, const core::View& to) {
@@ -64,6 +89,7 @@ void Carrier::carry(const core::View& from, const core::Frame& frame, const core
     if (!pixels_) pixels_ = std::make_unique<MovedPixels>();
     carry_cells(from, frame, to, options, pool, *pixels_, into);
   }
+  keep_clear_of_silhouettes(pool, into);
   into.pixels = {};
   for (const Origin origin : into.origin) ++into.pixels[static_cast<std::size_t>(origin)];
 }

@@ -145,6 +145,7 @@ class CellCarrier {
   void draw_clipped(int x, int y, int half, Band& band) const;
   float show(const Hit& hit, int x, int y, std::size_t out, CarriedImage& into) const;
   void draw_block(int first_x, int end_x, int y, Band& band) const;
+  float clear_m(const Hit& hit, int x, int y) const;
 
   Motion motion_;
   const core::Frame& frame_;
@@ -293,6 +294,13 @@ float CellCarrier::show(const Hit& hit, int x, int y, std::size_t out, CarriedIm
   return parted_px;
 }
 
+// Returns a range before which the ray of a pixel meets nothing: that of the nearest corner of the triangle there.
+float CellCarrier::clear_m(const Hit& hit, int x, int y) const {
+  float nearest = 0;
+  for (const std::size_t n : corners_of(hit.half)) nearest = std::max(nearest, pixels_.inverse_depth[n]);
+  return nearest > 0 ? motion_.new_lengths().at(x, y) / nearest : 0;
+}
+
 float CellCarrier::fill(int first, int end, CarriedImage& into) const {
   Band band(into.width, first, end);
   for (int y = 0; y + 1 < pixels_.height; ++y) {
@@ -315,7 +323,7 @@ float CellCarrier::fill(int first, int end, CarriedImage& into) const {
       const bool is_known = hit.half >= 0 && !(checks_entry && motion_.entry_m(x, y) > options_.nearest_m);
       if (is_known) added = std::max(added, show(hit, x, y, out, into));
       if (into.origin[out] != Origin::kOpen) continue;
-      into.range_m[out] = 0;
+      into.range_m[out] = is_known ? clear_m(hit, x, y) : 0;
       if (!into.colour.empty()) into.colour[out] = {};
     }
   }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "vpe/warp/ray_lengths.h"
+#include "vpe/core/ray_lengths.h"
 
 namespace vpe::warp {
 
@@ -47,7 +47,9 @@ class RowCarrier {
   // Finds for each pixel the position in the first image's row that it shows.
   void find_sources();
 
-  std::span<const float> source() const { return source_; }  // index of a neighbour and the share of the next
+  // The index of a neighbour and the share of the next; for open pixels the inverse of a depth before which there is
+  // nothing, 0 if none is known.
+  std::span<const float> source() const { return source_; }
   std::span<const Origin> origin() const { return origin_; }
   float added_px() const { return added_px_; }
 
@@ -69,6 +71,7 @@ void RowCarrier::find_sources() {
     place_[k] = static_cast<float>(i) + 0.5F + scan_.shift_px - scan_.base_px_m * inverse_depth_[k];
   }
   std::fill(origin_.begin(), origin_.end(), Origin::kOpen);
+  std::fill(source_.begin(), source_.end(), 0.0F);
   if (n < 2) return;
   const float last = place_[static_cast<std::size_t>(n - 1)];
   float reach = std::min(last + static_cast<float>(kCarriedPosition_px), scan_.open_from);
@@ -103,7 +106,11 @@ void RowCarrier::fill(int left, float begin, float reach) {
   const bool is_skyline = is_sky != (inverse_depth_[l + 1] == 0);
   // How much farther than its neighbour a pixel moves.
   const float parted_px = std::abs(width - 1);
-  if (!(parted_px <= (is_skyline ? kMostPartedSkyline_px : scan_.most_parted_px))) return;
+  if (!(parted_px <= (is_skyline ? kMostPartedSkyline_px : scan_.most_parted_px))) {
+    // No nearer than the nearer neighbour: silhouettes may reach a pixel farther than their last sample.
+    std::fill(source_.begin() + first, source_.begin() + end, std::max(inverse_depth_[l], inverse_depth_[l + 1]));
+    return;
+  }
   if (!is_sky || is_skyline) added_px_ = std::max(added_px_, parted_px);
   for (int k = first; k < end; ++k) {
     float share = std::min((static_cast<float>(k) + 0.5F - x) / width, 1.0F);
@@ -145,7 +152,7 @@ void write_row(const Scan& scan, RowCarrier& row, std::span<const float> length,
     const auto x = static_cast<std::size_t>(scan.is_mirrored ? n - 1 - k : k);
     into.origin[first + x] = origin[at];
     if (origin[at] == Origin::kOpen) {
-      into.range_m[first + x] = 0;
+      into.range_m[first + x] = source[at] > 0 ? length[x] / source[at] : 0;
       if (!into.colour.empty()) into.colour[first + x] = {};
       continue;
     }
@@ -201,8 +208,8 @@ void carry_rows(const core::View& from, const core::Frame& frame, const core::Vi
   const Scan scan = scan_of(from, to, options);
   const int tasks = (into.height + kTaskRows - 1) / kTaskRows;
   std::vector<float> added(static_cast<std::size_t>(tasks));
-  const RayLengths from_lengths(from);
-  const RayLengths to_lengths(to);
+  const core::RayLengths from_lengths(from);
+  const core::RayLengths to_lengths(to);
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
     RowCarrier row(scan);
     std::vector<float> length(static_cast<std::size_t>(scan.count));

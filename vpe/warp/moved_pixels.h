@@ -10,7 +10,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/view.h"
-#include "vpe/warp/ray_lengths.h"
+#include "vpe/core/ray_lengths.h"
 
 namespace vpe::warp {
 
@@ -26,8 +26,8 @@ class Motion {
   int width() const { return part_.width; }
   int height() const { return part_.height; }
   bool moves() const { return shift_m_ != glm::dvec3(0, 0, 0); }
-  const RayLengths& lengths() const { return lengths_; }
-  const RayLengths& new_lengths() const { return new_lengths_; }
+  const core::RayLengths& lengths() const { return lengths_; }
+  const core::RayLengths& new_lengths() const { return new_lengths_; }
 
   // Returns the ray through a pixel of the first image in the new camera's axes, `focal` long along the first one's.
   glm::vec3 ray(int x, int y) const {
@@ -52,8 +52,8 @@ class Motion {
   float new_focal_ = 1;
   float new_cx_ = 0;
   float new_cy_ = 0;
-  RayLengths lengths_;
-  RayLengths new_lengths_;
+  core::RayLengths lengths_;
+  core::RayLengths new_lengths_;
   glm::vec3 first_{};  // ray of pixel (0, 0), and the steps to the next pixel and row, in the new camera's axes
   glm::vec3 right_{};
   glm::vec3 up_{};

@@ -13,6 +13,16 @@ std::optional<double> SingleRays::cast(const glm::dvec3& camera_m, const glm::dv
                             camera_m, ray, exaggeration_, segment);
 }
 
+std::optional<double> SingleRays::cast_from(const glm::dvec3& camera_m, const glm::dvec3& ray,
+                                            double begin_m) const {
+  if (begin_m > 0) {
+    const std::optional<double> range =
+        cast(camera_m, ray, {begin_m, std::numeric_limits<double>::infinity()});
+    if (!range || *range != begin_m) return range;
+  }
+  return cast(camera_m, ray);
+}
+
 std::optional<double> SingleRays::cast_near(const glm::dvec3& camera_m, const glm::dvec3& ray, float a_m,
                                             float b_m) const {
   const auto near = static_cast<double>(std::min(a_m, b_m));

@@ -24,6 +24,10 @@ class SingleRays {
   std::optional<double> cast(const glm::dvec3& camera_m, const glm::dvec3& ray,
                              const paging::Surface::RaySegment& segment = {}) const;
 
+  // Returns the same for a ray that meets nothing before begin_m: casts from there, and from the camera if that place is
+  // below the surface.
+  std::optional<double> cast_from(const glm::dvec3& camera_m, const glm::dvec3& ray, double begin_m) const;
+
   // Returns the same for a ray that probably meets the surface near one of two ranges: casts about the nearer
   // one, then from the farther one on, and from the camera if either lies too far (the retrace of Wan 1999,
   // section 4).

@@ -87,7 +87,7 @@ void ImagePainter::set_shading(const core::DrawRequest& request) {
 }
 
 std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
-                                 std::span<base::Rgb> colour, std::span<float> inverse_depth,
+                                 std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted,
                                  base::ThreadPool& pool, Reading* reading) {
   set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
@@ -109,7 +109,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.height = size.y;
   job.range_m = range_m.data();
   job.colour = colour.data();
-  job.inverse_depth = inverse_depth.empty() ? nullptr : inverse_depth.data();
+  job.wanted = wanted.empty() ? nullptr : wanted.data();
 
   if (!job.by_point || reading == nullptr) return paint_bands(job, shading_, pool, reading);
   try {

@@ -39,9 +39,8 @@ class ImagePainter {
 
   // Paints the drawn part of request.view in any projection, and returns the number of nodata pixels.
   // `range_m` holds metres along the pixels' unit rays, core::kSkyRange for sky; rounding to float changes no
-  // colour. Sets all of `colour`. Sets `inverse_depth`, unless it is empty, to 1 / metres along the camera's
-  // axis, at most 1000, and 0 for sky; only for perspective views. All three hold one entry for each pixel of
-  // the drawn part, row by row from the top.
+  // colour. Sets all of `colour`, or, unless `wanted` is empty, the pixels where it is not 0. All three hold one entry
+  // for each pixel of the drawn part, row by row from the top.
   //
   // Colours are within 1/255 of TerrainShader::colour_at (nodata ground: nodata_image_at times nodata_tone(),
   // or core::kNodataMean without an image), core::air_m with core::haze_colour, and
@@ -60,7 +59,7 @@ class ImagePainter {
     std::string failure_of_points = {};   // out: why ground could not be coloured pixel by pixel, or ""
   };
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
-                     std::span<base::Rgb> colour, std::span<float> inverse_depth, base::ThreadPool& pool,
+                     std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted, base::ThreadPool& pool,
                      Reading* reading = nullptr);
 
   // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given

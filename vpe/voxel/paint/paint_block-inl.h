@@ -148,14 +148,13 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.sky &= all;
 
   const core::SettingsValues& settings = job.request->settings;
-  if (job.one_colour && job.inverse_depth == nullptr && settings.haze_visibility_m <= 0.0 &&
+  if (job.one_colour && settings.haze_visibility_m <= 0.0 &&
       settings.background != core::Background::kSky)
     return;
   const Doubles dd;
   const Halves dh;
   const RowRays& row = *block.row;
   const glm::dvec3& camera = job.request->view.camera.position_m;
-  float depth[kBlock];
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
     const auto range = hn::PromoteTo(dd, hn::Load(dh, block.range + i));
     const auto per_length = inverse_length(dd, block, i);
@@ -166,13 +165,6 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
       const auto ray = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);
       hn::Store(hn::Add(hn::Set(dd, camera[c]), hn::Mul(scale, ray)), dd, block.place[c] + i);
     }
-    if (job.inverse_depth != nullptr)
-      hn::StoreU(hn::DemoteTo(dh, hn::Mul(scale, hn::Set(dd, row.forward))), dh, depth + i);
-  }
-  if (job.inverse_depth == nullptr) return;
-  for (int i = 0; i < count; ++i) {
-    const bool sky = (block.sky >> i & 1U) != 0;
-    job.inverse_depth[at + static_cast<std::size_t>(i)] = sky ? 0.0F : 1.0F / std::max(depth[i], 1e-3F);
   }
 }
 

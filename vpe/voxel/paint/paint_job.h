@@ -35,7 +35,7 @@ struct PaintJob {
   int height = 0;
   const float* range_m = nullptr;
   base::Rgb* colour = nullptr;
-  float* inverse_depth = nullptr;  // 1 / metres along the camera's axis, 0 = sky; null when not wanted
+  const std::uint8_t* wanted = nullptr;  // pixels to paint: those that are not 0; null: all
 };
 
 // Paints rows [begin, end) and returns the number of their nodata pixels. Any thread may call it, with a

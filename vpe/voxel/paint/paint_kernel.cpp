@@ -18,19 +18,35 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int count) {
+// Returns which pixels of a block are to be painted, as bits.
+inline std::uint32_t wanted_bits(const PaintJob& job, int x, int y) {
+  const int count = std::min(kBlock, job.width - x);
+  const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
+  if (job.wanted == nullptr) return all;
+  const std::uint8_t* const wanted = job.wanted + static_cast<std::ptrdiff_t>(y) * job.width + x;
+  std::uint32_t bits = 0;
+  for (int i = 0; i < count; ++i) bits |= (wanted[i] != 0 ? 1U : 0U) << i;
+  return bits;
+}
+
+inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int count, std::uint32_t wanted) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const hn::Rebind<std::uint8_t, Floats> du;
   static_assert(sizeof(base::Rgb) == 3);
   std::uint8_t part[3 * kBlock];
-  std::uint8_t* const bytes = count == kBlock ? &out->r : part;
+  const bool is_whole = count == kBlock && wanted == ~std::uint32_t{0};
+  std::uint8_t* const bytes = is_whole ? &out->r : part;
   const auto byte = [&](const float* x) HWY_ATTR {
     return hn::DemoteTo(du, hn::ConvertTo(di, hn::Add(clamp(d, hn::Load(d, x), 0, 255), hn::Set(d, 0.5F))));
   };
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d)))
     hn::StoreInterleaved3(byte(block.red + i), byte(block.green + i), byte(block.blue + i), du, bytes + 3 * i);
-  if (count < kBlock) std::copy_n(part, 3 * count, &out->r);
+  if (is_whole) return;
+  for (std::uint32_t left = wanted; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    std::copy_n(part + 3 * i, 3, &out[i].r);
+  }
 }
 
 HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& tile, int x, int y,
@@ -80,8 +96,9 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
       if (block.is_sky[i] > 0.0F) block.red[i] = block.green[i] = block.blue[i] = behind;
     }
   }
-  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count);
-  return __builtin_popcount(block.nodata);
+  const std::uint32_t wanted = wanted_bits(job, block.x, block.y);
+  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count, wanted);
+  return __builtin_popcount(block.nodata & wanted);
 }
 
 std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {
@@ -92,11 +109,13 @@ std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int en
   for (int y = first_row; y < end_row; ++y) {
     if (tiles.trim()) tile = nullptr;
     int n = 0;
-    for (int x = 0; x < job.width; x += kBlock, ++n) {
+    for (int x = 0; x < job.width; x += kBlock) {
+      if (job.wanted != nullptr && wanted_bits(job, x, y) == 0) continue;
       begin(job, tiles, tile, x, y, blocks[n & 1]);
       if (n > 0) nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
+      ++n;
     }
-    nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
+    if (n > 0) nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
   }
   return nodata_count;
 }

@@ -34,7 +34,6 @@ RayRows ray_rows(const core::View& view) {
       row.a = axes.right;
       row.b = glm::dvec3(0);
       row.c = axes.up * (y / focal) + axes.forward;
-      row.forward = glm::dot(row.c, axes.forward);
       row.m0 = glm::dot(row.c, row.c);
       row.m1 = 2 * glm::dot(row.a, row.c);
       row.m2 = glm::dot(row.a, row.a);

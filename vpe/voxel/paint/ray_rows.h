@@ -20,7 +20,6 @@ struct RowRays {
   glm::dvec3 a, b, c;
   // The square of the direction's length is m0 + c0 (m1 + c0 m2), near 1 about the principal point.
   double m0 = 1, m1 = 0, m2 = 0;
-  double forward = 0;  // component along the camera's axis, in perspective
 };
 
 // Holds the rays of the drawn part of a view. Directions are those of core::pixel_ray() up to their length,
