@@ -28,9 +28,12 @@ void RayLengths::row(int y, std::span<float> out) const {
   for (std::size_t x = 0; x < out.size(); ++x) out[x] = std::sqrt(up + across_[x]);
 }
 
-float RayLengths::at(int x, int y) const { return std::sqrt(upright(y) + across_[static_cast<std::size_t>(x)]); }
+float RayLengths::at(int x, int y) const {
+  return std::sqrt(upright(y) + across_[static_cast<std::size_t>(x)]);
+}
 
-void inverse_depths(const View& view, std::span<const float> range_m, base::ThreadPool& pool, std::span<float> out) {
+void inverse_depths(const View& view, std::span<const float> range_m, base::ThreadPool& pool,
+                    std::span<float> out) {
   constexpr float kMost = 1000;  // nearer ground is no edge
   constexpr int kRows = 16;
   const RayLengths lengths(view);

@@ -29,6 +29,7 @@ class RayLengths {
 
 // Writes 1 / metres along the camera's axis for the ranges of a view's drawn part, within 4e-7 of the value, at most 1000,
 // and 0 for sky: what smooth_edges() needs (image/edge_filter.h). For perspective views.
-void inverse_depths(const View& view, std::span<const float> range_m, base::ThreadPool& pool, std::span<float> out);
+void inverse_depths(const View& view, std::span<const float> range_m, base::ThreadPool& pool,
+                    std::span<float> out);
 
 }  // namespace vpe::core

@@ -26,7 +26,8 @@ struct Counts {
 };
 
 Counts count_unknown(const glm::ivec2& size, const core::WantedPixels& wanted) {
-  Counts counts{std::vector<int>(static_cast<std::size_t>(size.y)), std::vector<int>(static_cast<std::size_t>(size.x))};
+  Counts counts{std::vector<int>(static_cast<std::size_t>(size.y)),
+                std::vector<int>(static_cast<std::size_t>(size.x))};
   std::size_t n = 0;
   for (std::size_t y = 0; y < counts.rows.size(); ++y) {
     for (std::size_t x = 0; x < counts.columns.size(); ++x, ++n) {
@@ -68,7 +69,8 @@ PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted) 
   std::vector<int> rays(static_cast<std::size_t>(size.x));
   for (int y = top; y < size.y - bottom; ++y)
     for (int x = left; x < size.x - right; ++x)
-      if (wanted.is_wanted[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)] != 0)
+      if (wanted.is_wanted[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
+                           static_cast<std::size_t>(x)] != 0)
         ++rays[static_cast<std::size_t>(x)];
   plan.rays = std::accumulate(rays.begin(), rays.end(), std::int64_t{0});
   const double pixels = static_cast<double>(size.x) * size.y;
@@ -81,9 +83,10 @@ PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted) 
   return plan;
 }
 
-ColumnWalk::Usage PixelCaster::cast_strip(const core::View& view, RangeOptions options, const core::SubRectangle& strip,
-                                          const core::WantedPixels& wanted, base::ThreadPool& pool,
-                                          std::span<float> range_m, TileFallbacks* fallbacks) {
+ColumnWalk::Usage PixelCaster::cast_strip(const core::View& view, RangeOptions options,
+                                          const core::SubRectangle& strip, const core::WantedPixels& wanted,
+                                          base::ThreadPool& pool, std::span<float> range_m,
+                                          TileFallbacks* fallbacks) {
   const core::SubRectangle part = core::drawn_part(view);
   options.only = strip;
   buffer_m_.resize(range_m.size());
@@ -113,7 +116,8 @@ ColumnWalk::Usage PixelCaster::cast(const core::View& view, const RangeOptions& 
   std::atomic<bool> lacks_tile{false};
   const auto in_strip = [&](int x, int y) {
     return std::ranges::any_of(plan.strips, [&](const core::SubRectangle& s) {
-      return part.x + x >= s.x && part.x + x < s.x + s.width && part.y + y >= s.y && part.y + y < s.y + s.height;
+      return part.x + x >= s.x && part.x + x < s.x + s.width && part.y + y >= s.y &&
+             part.y + y < s.y + s.height;
     });
   };
   pool.run(plan.columns.size(), [&](std::size_t task) {
@@ -124,7 +128,8 @@ ColumnWalk::Usage PixelCaster::cast(const core::View& view, const RangeOptions& 
       if (wanted.is_wanted[n] == 0 || in_strip(x, y)) continue;
       const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
       const auto clear_m = static_cast<double>(wanted.clear_m[n]);
-      const std::optional<double> range = rays.cast_from(camera_m, ray, std::isfinite(clear_m) ? kBegin * clear_m : 0);
+      const std::optional<double> range =
+          rays.cast_from(camera_m, ray, std::isfinite(clear_m) ? kBegin * clear_m : 0);
       if (range)
         range_m[n] = static_cast<float>(*range);
       else

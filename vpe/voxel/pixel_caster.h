@@ -48,8 +48,8 @@ class PixelCaster {
 
  private:
   ColumnWalk::Usage cast_strip(const core::View& view, RangeOptions options, const core::SubRectangle& strip,
-                               const core::WantedPixels& wanted, base::ThreadPool& pool, std::span<float> range_m,
-                               TileFallbacks* fallbacks);
+                               const core::WantedPixels& wanted, base::ThreadPool& pool,
+                               std::span<float> range_m, TileFallbacks* fallbacks);
 
   const RangeCaster& caster_;
   SectorCaster sectors_;

@@ -511,8 +511,8 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
   const auto start = Clock::now();
   Image image(caster_.store(), for_planet, reading_rule(for_planet, reads_all));
   core::DrawResult result;
-  image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted, pool_,
-                                   frame.range_m, &image.fallbacks);
+  image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted,
+                                   pool_, frame.range_m, &image.fallbacks);
   result.stats.select_ms = ms_since(start);
   if (request.want_colour) {
     image.nodata_pixels =
@@ -530,7 +530,7 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
 }  // namespace
 
 std::unique_ptr<core::PixelRenderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
-                                                  const RayOptions& options) {
+                                                       const RayOptions& options) {
   return std::make_unique<RayRenderer>(std::move(planet), options);
 }
 

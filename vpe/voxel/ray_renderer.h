@@ -77,6 +77,6 @@ struct RayOptions {
 // that is; the certificate's bounds include it. draw() throws std::runtime_error for a view or an appearance
 // that it cannot draw, and paging::PlanetError where not even a root can be read.
 std::unique_ptr<core::PixelRenderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
-                                                  const RayOptions& options = {});
+                                                       const RayOptions& options = {});
 
 }  // namespace vpe::voxel

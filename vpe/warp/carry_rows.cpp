@@ -108,7 +108,8 @@ void RowCarrier::fill(int left, float begin, float reach) {
   const float parted_px = std::abs(width - 1);
   if (!(parted_px <= (is_skyline ? kMostPartedSkyline_px : scan_.most_parted_px))) {
     // No nearer than the nearer neighbour: silhouettes may reach a pixel farther than their last sample.
-    std::fill(source_.begin() + first, source_.begin() + end, std::max(inverse_depth_[l], inverse_depth_[l + 1]));
+    std::fill(source_.begin() + first, source_.begin() + end,
+              std::max(inverse_depth_[l], inverse_depth_[l + 1]));
     return;
   }
   if (!is_sky || is_skyline) added_px_ = std::max(added_px_, parted_px);

@@ -37,12 +37,14 @@ Motion::Motion(const core::View& from, const core::View& to)
 
 double Motion::entry_m(int x, int y) const {
   const auto f = static_cast<double>(new_focal_);
-  const glm::dvec3 ray((x + 0.5 - static_cast<double>(new_cx_)) / f, (static_cast<double>(new_cy_) - y - 0.5) / f, 1);
+  const glm::dvec3 ray((x + 0.5 - static_cast<double>(new_cx_)) / f,
+                       (static_cast<double>(new_cy_) - y - 0.5) / f, 1);
   double depth_m = 0;
   for (std::size_t n = 0; n < borders_.size(); ++n) {
     if (outside_m_[n] <= 0) continue;
     const double turns_in = glm::dot(borders_[n], ray);
-    depth_m = turns_in > 0 ? std::max(depth_m, outside_m_[n] / turns_in) : std::numeric_limits<double>::infinity();
+    depth_m =
+        turns_in > 0 ? std::max(depth_m, outside_m_[n] / turns_in) : std::numeric_limits<double>::infinity();
   }
   return depth_m == 0 ? 0 : depth_m * glm::length(ray);
 }

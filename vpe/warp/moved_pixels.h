@@ -9,8 +9,8 @@
 
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
-#include "vpe/core/view.h"
 #include "vpe/core/ray_lengths.h"
+#include "vpe/core/view.h"
 
 namespace vpe::warp {
 

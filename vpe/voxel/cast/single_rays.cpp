@@ -16,8 +16,7 @@ std::optional<double> SingleRays::cast(const glm::dvec3& camera_m, const glm::dv
 std::optional<double> SingleRays::cast_from(const glm::dvec3& camera_m, const glm::dvec3& ray,
                                             double begin_m) const {
   if (begin_m > 0) {
-    const std::optional<double> range =
-        cast(camera_m, ray, {begin_m, std::numeric_limits<double>::infinity()});
+    const std::optional<double> range = cast(camera_m, ray, {begin_m, std::numeric_limits<double>::infinity()});
     if (!range || *range != begin_m) return range;
   }
   return cast(camera_m, ray);

@@ -148,8 +148,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.sky &= all;
 
   const core::SettingsValues& settings = job.request->settings;
-  if (job.one_colour && settings.haze_visibility_m <= 0.0 &&
-      settings.background != core::Background::kSky)
+  if (job.one_colour && settings.haze_visibility_m <= 0.0 && settings.background != core::Background::kSky)
     return;
   const Doubles dd;
   const Halves dh;

@@ -97,7 +97,8 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
     }
   }
   const std::uint32_t wanted = wanted_bits(job, block.x, block.y);
-  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count, wanted);
+  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count,
+                wanted);
   return __builtin_popcount(block.nodata & wanted);
 }
 
