@@ -41,7 +41,7 @@ struct Part {
   double distance_m = 0;
   lod::TileTree::Index index = 0;                // of the tile
   std::shared_ptr<const SurfaceTile> tile = {};  // null: the whole tile
-  int b = 0;                                    // the block has 2^b x 2^b cells
+  int b = 0;                                     // the block has 2^b x 2^b cells
   int i = 0;
   int j = 0;
   bool is_exact = false;
@@ -78,7 +78,8 @@ class Search {
   // planet's centre.
   double bound_m(double angle_rad, double top_m) const {
     if (angle_rad >= 0.5 * mars::kPi) return place_radius_m_;
-    if (place_radius_m_ * std::cos(angle_rad) <= top_m) return place_radius_m_ * std::sin(std::max(angle_rad, 0.0));
+    if (place_radius_m_ * std::cos(angle_rad) <= top_m)
+      return place_radius_m_ * std::sin(std::max(angle_rad, 0.0));
     const double half = std::sin(0.5 * std::max(angle_rad, 0.0));
     return std::sqrt((place_radius_m_ - top_m) * (place_radius_m_ - top_m) +
                      4 * place_radius_m_ * top_m * half * half);
@@ -88,7 +89,8 @@ class Search {
     const lod::TileInfo& info = tree_[index];
     const mars::Cap cap = lod::bounding_cap(info.key);
     Part part;
-    part.distance_m = bound_m(mars::angle_between_rad(up_, cap.centre) - cap.radius_rad, radius_m(info.max_height_m));
+    part.distance_m =
+        bound_m(mars::angle_between_rad(up_, cap.centre) - cap.radius_rad, radius_m(info.max_height_m));
     part.index = index;
     parts_.push(std::move(part));
   }
@@ -122,7 +124,8 @@ class Search {
           reach_rad = std::max(reach_rad, mars::angle_between_rad(middle, direction(of, x, y)));
       const SurfaceTile& tile = *of.tile;
       const int side = tile.data.posts.intervals >> b;
-      const float top_m = tile.block_max[static_cast<std::size_t>(b - 1)][static_cast<std::size_t>(j * side + i)];
+      const float top_m =
+          tile.block_max[static_cast<std::size_t>(b - 1)][static_cast<std::size_t>(j * side + i)];
       part.distance_m =
           bound_m(mars::angle_between_rad(up_, middle) - reach_rad, radius_m(static_cast<double>(top_m)));
     }

@@ -28,9 +28,9 @@ struct Layer {
 };
 
 // Every module that a room of vpe/app may use.
-const std::vector<std::string> kBelowApp{"vpe/base", "mars",        "vpe/core",    "cull",      "lod",
-                                         "paging",   "scripts",     "vpe/overlay", "vpe/gl",    "vpe/voxel",
-                                         "panorama", "vpe/explore", "vpe/report",  "vpe/window"};
+const std::vector<std::string> kBelowApp{"vpe/base", "mars",        "vpe/core",    "cull",       "lod",
+                                         "paging",   "scripts",     "vpe/overlay", "vpe/gl",     "vpe/voxel",
+                                         "panorama", "vpe/explore", "vpe/report",  "vpe/window", "vpe/warp"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
   rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
@@ -62,6 +62,7 @@ const std::vector<Layer>& layers() {
       {"paging", "paging", {"vpe/base"}},
       {"scripts", "scripts", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/overlay", "vpe::overlay", {"vpe/base", "mars", "vpe/core"}, false, false, true},
+      {"vpe/warp", "vpe::warp", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/gl", "vpe::gl", {"vpe/base", "mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
       {"vpe/voxel/cast", "vpe::voxel", {"vpe/base", "mars", "vpe/core", "lod", "paging"}},
       {"vpe/voxel/paint", "vpe::voxel", {"vpe/base", "mars", "vpe/core", "lod", "paging", "vpe/voxel/cast"}},
