@@ -82,12 +82,13 @@ class Continue : public Signals {
     return parse_json(result.out).at("identity").get<std::string>();
   }
 
-  // Sends `signal` after a random time, until a build ends by itself; returns how often it was sent.
+  // Sends `signal` after a random time, until a build ends by itself; returns how often it was sent. The times grow, so that
+  // a slow machine gets somewhere.
   int stop_until_done(int signal, double longest_s, test_support::Random& random, Result& last) const {
     for (int stops = 0;; ++stops) {
       Command command = command_for(build_words("x.vpe"));
-      const auto end =
-          std::chrono::steady_clock::now() + std::chrono::duration<double>(random.uniform(0.05, longest_s));
+      const auto end = std::chrono::steady_clock::now() +
+                       std::chrono::duration<double>(random.uniform(0.05, longest_s * (1 + 0.1 * stops)));
       command.signal = signal;
       command.when = [end] { return std::chrono::steady_clock::now() > end; };
       last = run(command);
