@@ -302,7 +302,7 @@ TEST_F(DrawingTest, ACopyOfAnEarlierSessionIsRestored) {
   explore::save_project(lost, copy);
   fs::last_write_time(copy, fs::file_time_type::clock::now() - std::chrono::hours(48));
   open();
-  EXPECT_NE(window_->state().message.find("unsaved drawings"), std::string::npos);
+  EXPECT_NE(opening_message_.find("unsaved drawings"), std::string::npos) << opening_message_;
   click("Draw");
   settle();
   click("Restore##drawings");

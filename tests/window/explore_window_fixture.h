@@ -41,10 +41,12 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
       return std::make_unique<app::WindowPainter>(file, common);
     };
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
+    opening_message_ = window_->state().message;
     focus();
   }
 
-  ExploreSetup extra_;  // options of a test
+  ExploreSetup extra_;           // options of a test
+  std::string opening_message_;  // of the window that was opened last; messages go away after a while
   std::shared_ptr<const paging::PlanetFile> planet_ = planet();
   std::shared_ptr<const paging::PlanetFile> painted_;  // the same planet with other storage, or null
 };

@@ -61,7 +61,6 @@ TEST_F(ExploreWindowTest, ADragHoldsTheGround) {
 
 TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   open();
-  const std::int64_t before = window_->images();
   int left = 0;
   int top = 0;
   glfwGetWindowPos(window_->display().handle(), &left, &top);
@@ -70,6 +69,7 @@ TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   const mars::Pose pose = window_->session().pose();
   robot_->press();
   iterate(2);
+  const std::int64_t before = window_->images();
   robot_->move(620 + left, 250 + top);
   for (int n = 0; n < 100 && window_->session().pose().lon_deg == pose.lon_deg; ++n) window_->step(0.01);
   ASSERT_NE(window_->session().pose().lon_deg, pose.lon_deg);
@@ -379,7 +379,7 @@ TEST_F(ExploreWindowTest, AnUnsavedFlightOutlivesTheProgram) {
       std::regex_replace(copy.filename().string(), std::regex("-[0-9]+\\.flight$"), "-999999999.flight");
   std::filesystem::rename(copy, of_dead);
   open();
-  EXPECT_NE(window_->state().message.find("unsaved flight"), std::string::npos) << window_->state().message;
+  EXPECT_NE(opening_message_.find("unsaved flight"), std::string::npos) << opening_message_;
   click("Flight");
   click("Restore");
   ASSERT_NE(window_->session().flights().editor(), nullptr);
