@@ -24,17 +24,17 @@ build() {
     cmake --build "$folder" ${targets[0]:+--target "${targets[@]}"} -- -j"$jobs"
 }
 
-# Runs ctest in a build folder and says how many tests ran and which were skipped, and why. One test more at a time than
-# there are cores: those of windows and films wait for much of their time.
+# Runs ctest in a build folder and says how many tests ran and which were skipped. One process more at a time than there
+# are cores: tests of windows and films wait for much of their time.
 run() {
-  local log="build/$1/ctest.log" status=0
-  shift_args=("${@:2}")
-  ctest --test-dir "build/$1" -j"$((jobs + 1))" --no-tests=error --output-on-failure "${shift_args[@]}" 2>&1 | tee "$log" || status=$?
+  local status=0 log="build/$1/Testing/Temporary/LastTest.log"
+  ctest --test-dir "build/$1" -j"$((jobs + 1))" --no-tests=error --output-on-failure "${@:2}" || status=$?
   local skipped
-  skipped=$(grep -cE '\*\*\*Skipped' "$log" || true)
-  if [ "$skipped" -gt 0 ]; then
-    echo "skipped ($skipped):"
-    grep -E '\*\*\*Skipped' "$log" | sed -E 's/^.*Test +#[0-9]+: ([^ ]+).*/  \1/'
+  skipped=$(grep -oE '^\[  SKIPPED \] [^ ,]+\.[^ ,]+' "$log" | sort -u | sed 's/.*\] /  /' || true)
+  echo "tests run: $(grep -cE '^\[ RUN      \]' "$log")"
+  if [ -n "$skipped" ]; then
+    echo "skipped:"
+    echo "$skipped"
     [ -e ../shared/data ] || [ -n "${VPE_SHARED_DATA:-}" ] || echo "  (no planetary data beside the checkout)"
   fi
   return "$status"
@@ -48,7 +48,7 @@ run_sanitized() {
   mkdir -p "$reports"
   ASAN_OPTIONS="detect_leaks=1:log_path=$reports/address" TSAN_OPTIONS="detect_deadlocks=0:log_path=$reports/thread" \
     UBSAN_OPTIONS="print_stacktrace=1:log_path=$reports/undefined" \
-    run "$1" -L default --repeat until-pass:2 --timeout 3000 || status=$?
+    run "$1" -L shard --repeat until-pass:2 --timeout 6000 || status=$?
   local report
   for report in "$reports"/*; do
     [ -e "$report" ] || continue
@@ -79,15 +79,15 @@ tools/check_format.sh
 # In CI warnings are errors; a newer compiler's new warnings stop nobody else.
 if [ "${CI:-}" = true ]; then build ci; else build release; fi
 if [ "$what" = default ]; then
-  run release -L default
+  run release -L shard --timeout 3000
   exit
 fi
 eval "$(tests/make_planets.sh)"
-run release
+run release -LE shard
 cmake --preset release -DVPE_DOCS_WARN_AS_ERROR=FAIL_ON_WARNINGS >/dev/null
 cmake --build build/release --target docs
 build clang
-run clang -L default
+run clang -L shard
 tools/check_tidy.sh --preset clang
 # Sanitizers over all default tests; cmake/sanitizer_support.cpp names the libraries that are left out.
 build asan

@@ -53,10 +53,11 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   pid_t id() const { return process_; }
+  int status() const { return status_; }  // after the end, as waitpid() has it
   // Waits for the end for at most 20 s.
   bool ends() {
     for (int n = 0; n < 2000; ++n) {
-      if (waitpid(process_, nullptr, WNOHANG) == process_) {
+      if (waitpid(process_, &status_, WNOHANG) == process_) {
         process_ = -1;
         return true;
       }
@@ -67,6 +68,7 @@ class Program {
 
  private:
   pid_t process_ = -1;
+  int status_ = 0;
 };
 
 // Returns the number of poses of the unsaved flight in a home folder, or nullopt if there is none: a copy in the folder
@@ -136,6 +138,12 @@ void end_once(End end, std::mt19937& random) {
     }
   }
   ASSERT_TRUE(program.ends());
+  if (end == End::kNoDisplay) {
+    std::stringstream said;
+    said << std::ifstream(home.path() / "err.txt").rdbuf();
+    EXPECT_TRUE(WIFEXITED(program.status()) && WEXITSTATUS(program.status()) == 1) << program.status();
+    EXPECT_NE(said.str().find("the connection to the display was lost"), std::string::npos) << said.str();
+  }
   const std::optional<std::size_t> after = kept_poses(home.path());
   ASSERT_TRUE(after.has_value()) << "the unsaved flight is lost";
   EXPECT_GE(*after, before);

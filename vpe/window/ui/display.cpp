@@ -1,5 +1,6 @@
 #include "vpe/window/ui/display.h"
 
+#include <dlfcn.h>
 #include <epoxy/gl.h>
 // After epoxy, which replaces OpenGL's own headers.
 #define GLFW_INCLUDE_NONE
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
@@ -140,6 +142,21 @@ void set_colours() {
                      options.instead);
 }
 
+// Ends the program when the X server is gone. Xlib's own handler calls exit(), which destroys what the threads that draw
+// still use. Nothing is lost: work that is not saved has a copy by then.
+[[noreturn]] int end_without_display(void*) {
+  std::fputs("vpe: the connection to the display was lost\n", stderr);
+  std::_Exit(1);
+}
+
+// Xlib is not part of GLFW's interface, and absent under Wayland.
+void handle_lost_display() {
+  using Handler = int (*)(void*);
+  using SetHandler = Handler (*)(Handler);
+  const auto set_handler = reinterpret_cast<SetHandler>(dlsym(RTLD_DEFAULT, "XSetIOErrorHandler"));
+  if (set_handler != nullptr) set_handler(end_without_display);
+}
+
 }  // namespace
 
 void check_display(const DisplayOptions& options) {
@@ -148,6 +165,7 @@ void check_display(const DisplayOptions& options) {
 
 Display::Display(const DisplayOptions& options) : state_(std::make_unique<State>()) {
   if (glfwInit() != GLFW_TRUE) fail(options);
+  handle_lost_display();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
