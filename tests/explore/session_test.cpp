@@ -259,7 +259,7 @@ TEST(Session, AnOffsetOfThePlatformStaysAboveTheGround) {
     session.advance(0.02, down);
     ASSERT_GE(session.height_m(), SteerLimits::kClearance_m - 1e-6) << n;
   }
-  EXPECT_LT(session.height_m(), 10);
+  EXPECT_LT(session.height_m(), 200) << "the ground below may fall away meanwhile";
   Controls up;
   up.up = 1;
   session.advance(0.02, up);
