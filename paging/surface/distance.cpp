@@ -35,9 +35,9 @@ double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dve
   return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
-// Holds a part of the surface and a bound of its distance: a tile, a block of a finest tile's cells, or one cell, whose
+// Holds a piece of the surface and a bound of its distance: a tile, a block of a finest tile's cells, or one cell, whose
 // distance is exact.
-struct Part {
+struct Piece {
   double distance_m = 0;
   lod::TileTree::Index index = 0;                // of the tile
   std::shared_ptr<const SurfaceTile> tile = {};  // null: the whole tile
@@ -46,7 +46,7 @@ struct Part {
   int j = 0;
   bool is_exact = false;
 
-  bool operator<(const Part& other) const { return distance_m > other.distance_m; }  // the nearest first
+  bool operator<(const Piece& other) const { return distance_m > other.distance_m; }  // the nearest first
 };
 
 class Search {
@@ -61,13 +61,13 @@ class Search {
     for (int face = 0; face < mars::kFaces; ++face) add_tile(static_cast<lod::TileTree::Index>(face));
   }
 
-  // Opens the nearest part again and again, until that is a cell.
+  // Opens the nearest piece again and again, until that is a cell.
   double run() {
     while (true) {
-      const Part part = parts_.top();
-      parts_.pop();
-      if (part.is_exact) return part.distance_m;
-      open(part);
+      const Piece piece = pieces_.top();
+      pieces_.pop();
+      if (piece.is_exact) return piece.distance_m;
+      open(piece);
     }
   }
 
@@ -88,32 +88,32 @@ class Search {
   void add_tile(lod::TileTree::Index index) {
     const lod::TileInfo& info = tree_[index];
     const mars::Cap cap = lod::bounding_cap(info.key);
-    Part part;
-    part.distance_m =
+    Piece piece;
+    piece.distance_m =
         bound_m(mars::angle_between_rad(up_, cap.centre) - cap.radius_rad, radius_m(info.max_height_m));
-    part.index = index;
-    parts_.push(std::move(part));
+    piece.index = index;
+    pieces_.push(std::move(piece));
   }
 
-  glm::dvec3 direction(const Part& of, int i, int j) const {
+  glm::dvec3 direction(const Piece& of, int i, int j) const {
     return mars::chart_direction(tree_[of.index].key.face, of.tile->lines.u[static_cast<std::size_t>(i)],
                                  of.tile->lines.v[static_cast<std::size_t>(j)]);
   }
-  glm::dvec3 post(const Part& of, int i, int j) const {
+  glm::dvec3 post(const Piece& of, int i, int j) const {
     return direction(of, i, j) * radius_m(of.tile->data.posts.at(i, j));
   }
 
-  void add_block(const Part& of, int b, int i, int j) {
-    Part part = of;
-    part.b = b;
-    part.i = i;
-    part.j = j;
+  void add_block(const Piece& of, int b, int i, int j) {
+    Piece piece = of;
+    piece.b = b;
+    piece.i = i;
+    piece.j = j;
     if (b == 0) {
       const glm::dvec3 low = post(of, i, j);
       const glm::dvec3 high = post(of, i + 1, j + 1);
-      part.distance_m = std::sqrt(std::min(squared_distance(place_, low, post(of, i + 1, j), high),
-                                           squared_distance(place_, low, high, post(of, i, j + 1))));
-      part.is_exact = true;
+      piece.distance_m = std::sqrt(std::min(squared_distance(place_, low, post(of, i + 1, j), high),
+                                            squared_distance(place_, low, high, post(of, i, j + 1))));
+      piece.is_exact = true;
     } else {
       const int n = 1 << b;
       const int half = n / 2;
@@ -126,26 +126,26 @@ class Search {
       const int side = tile.data.posts.intervals >> b;
       const float top_m =
           tile.block_max[static_cast<std::size_t>(b - 1)][static_cast<std::size_t>(j * side + i)];
-      part.distance_m =
+      piece.distance_m =
           bound_m(mars::angle_between_rad(up_, middle) - reach_rad, radius_m(static_cast<double>(top_m)));
     }
-    parts_.push(std::move(part));
+    pieces_.push(std::move(piece));
   }
 
-  void open(const Part& part) {
-    if (part.tile != nullptr) {
+  void open(const Piece& piece) {
+    if (piece.tile != nullptr) {
       for (const int y : {0, 1})
-        for (const int x : {0, 1}) add_block(part, part.b - 1, 2 * part.i + x, 2 * part.j + y);
+        for (const int x : {0, 1}) add_block(piece, piece.b - 1, 2 * piece.i + x, 2 * piece.j + y);
       return;
     }
-    const lod::TileInfo& info = tree_[part.index];
+    const lod::TileInfo& info = tree_[piece.index];
     if (info.has_children) {
-      const lod::TileTree::Index first = tree_.first_child(part.index);
+      const lod::TileTree::Index first = tree_.first_child(piece.index);
       for (lod::TileTree::Index child = 0; child < 4; ++child) add_tile(first + child);
       return;
     }
-    Part whole;
-    whole.index = part.index;
+    Piece whole;
+    whole.index = piece.index;
     whole.tile = surface_.tile(info.key, exaggeration_);
     add_block(whole, static_cast<int>(whole.tile->block_max.size()), 0, 0);
   }
@@ -156,7 +156,7 @@ class Search {
   double place_radius_m_;
   glm::dvec3 up_;
   double exaggeration_;
-  std::priority_queue<Part> parts_;
+  std::priority_queue<Piece> pieces_;
 };
 
 }  // namespace

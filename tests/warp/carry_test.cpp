@@ -68,11 +68,11 @@ Errors errors_of(const CarriedImage& carried, const core::View& from, const core
       ++errors.shown;
       const auto is = static_cast<double>(carried.range_m[n]);
       const auto should = static_cast<double>(truth.range_m[n]);
-      const auto error_px = [&](double range_m) {
+      const auto off_px = [&](double range_m) {
         return glm::length(seen_before(from, to, x, y, is) - seen_before(from, to, x, y, range_m));
       };
       if (std::isfinite(is) == std::isfinite(should))
-        errors.worst_px = std::max(errors.worst_px, error_px(should));
+        errors.worst_px = std::max(errors.worst_px, off_px(should));
       // Silhouettes are those of the first image's pixels, so what lies beside the image counts too.
       if (x < around || y < around || x >= carried.width - around || y >= carried.height - around) continue;
       double farthest = 0;
@@ -80,7 +80,7 @@ Errors errors_of(const CarriedImage& carried, const core::View& from, const core
         for (int u = x - around; u <= x + around; ++u)
           farthest = std::max(
               farthest, static_cast<double>(truth.range_m[static_cast<std::size_t>(v * carried.width + u)]));
-      if (is > farthest) errors.worst_behind_px = std::max(errors.worst_behind_px, error_px(farthest));
+      if (is > farthest) errors.worst_behind_px = std::max(errors.worst_behind_px, off_px(farthest));
     }
   }
   return errors;
