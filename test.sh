@@ -37,6 +37,10 @@ run() {
     echo "$skipped"
     [ -e ../shared/data ] || [ -n "${VPE_SHARED_DATA:-}" ] || echo "  (no planetary data beside the checkout)"
   fi
+  if [ "$status" -ne 0 ]; then
+    echo "failed:"
+    grep -oE '^\[  FAILED  \] [^ ,]+\.[^ ,]+' "$log" | sort -u | sed 's/.*\] /  /' || true
+  fi
   return "$status"
 }
 
