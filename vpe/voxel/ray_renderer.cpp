@@ -101,6 +101,8 @@ class RayRenderer : public core::PixelRenderer {
   };
 
   core::DrawResult draw_image(const core::DrawRequest& request);
+  core::DrawResult draw_below(const core::DrawRequest& request) const;
+  void require_drawable(const core::DrawRequest& request) const;  // throws
   ReadingRule reading_rule(const core::DrawRequest& request, bool reads_all);
   bool is_below_ground(const core::DrawRequest& request) const;
   void check_size(const core::DrawRequest& request) const;
@@ -435,20 +437,27 @@ bool RayRenderer::is_below_ground(const core::DrawRequest& request) const {
   return distance_m < caster_.surface().readable_radius_m(camera_m / distance_m, exaggeration);
 }
 
-core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
+// Draws the image of a camera below the ground.
+core::DrawResult RayRenderer::draw_below(const core::DrawRequest& request) const {
+  core::DrawResult below;
+  below.certificate = certify(request, below.frame, Image(caster_.store(), request, ReadingRule::never()));
+  core::draw_below_ground(request, below);
+  return below;
+}
+
+void RayRenderer::require_drawable(const core::DrawRequest& request) const {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
   planet_->tree().require_drawable(request.settings.exaggeration);
+}
+
+core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
+  require_drawable(request);
   if (!request.paging.wait) prefetcher_.stop();
   const bool reads_all = loader_.begin(request);
   if (explained_ != nullptr) explained_->clear();
-  if (is_below_ground(request)) {
-    core::DrawResult below;
-    below.certificate = certify(request, below.frame, Image(caster_.store(), request, ReadingRule::never()));
-    core::draw_below_ground(request, below);
-    return below;
-  }
+  if (is_below_ground(request)) return draw_below(request);
   check_size(request);
   const auto start = Clock::now();
   core::DrawResult result;
@@ -494,9 +503,7 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
 
 core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
                                           core::Frame& frame) {
-  if (const std::string trouble = core::check(request.view); !trouble.empty())
-    throw std::runtime_error(trouble);
-  if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
+  require_drawable(request);
   const std::size_t pixels = pixels_of(request.view);
   if (request.view.projection != core::Projection::kPerspective || request.settings.samples > 1)
     throw std::invalid_argument("single pixels are drawn of perspective views with one sample a pixel");
@@ -505,9 +512,18 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
     throw std::invalid_argument("the pixels to draw have another size than the image");
   core::DrawRequest for_planet = request;
   core::for_body(for_planet.settings, planet_->meta().body);
-  planet_->tree().require_drawable(request.settings.exaggeration);
   prefetcher_.stop();
   const bool reads_all = loader_.begin(for_planet);
+  if (is_below_ground(for_planet)) {
+    core::DrawResult below = draw_below(for_planet);
+    for (std::size_t n = 0; n < pixels; ++n) {
+      if (wanted.is_wanted[n] == 0) continue;
+      frame.range_m[n] = 0;
+      if (request.want_colour) frame.colour[n] = below.frame.colour[n];
+    }
+    below.frame = {};
+    return below;
+  }
   const auto start = Clock::now();
   Image image(caster_.store(), for_planet, reading_rule(for_planet, reads_all));
   core::DrawResult result;

@@ -23,7 +23,7 @@ struct CarriedImage {
   int width = 0;
   int height = 0;
   std::vector<base::Rgb> colour;  // black where the pixel is open; empty if the first image has no colour
-  // As in core::Frame. Where the pixel is open: a range before which its ray meets nothing, 0 if none is known.
+  // Holds what core::Frame holds. Where the pixel is open: a range before which its ray meets nothing, 0 if none is known.
   std::vector<float> range_m;
   std::vector<Origin> origin;
   std::array<std::int64_t, 4> pixels{};  // of each origin

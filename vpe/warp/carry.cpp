@@ -32,24 +32,31 @@ void check(const core::View& from, const core::Frame& frame, const core::View& t
 void keep_clear_of_silhouettes(base::ThreadPool& pool, CarriedImage& image) {
   constexpr int kAround = 2;
   constexpr int kRows = 16;
-  const std::vector<float> before = image.range_m;
+  struct ClearPixel {
+    std::size_t index = 0;
+    float clear_m = 0;
+  };
   const auto index = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
   };
-  pool.run(static_cast<std::size_t>((image.height + kRows - 1) / kRows), [&](std::size_t task) {
+  const auto clear_m_at = [&](int x, int y) {
+    float clear_m = image.range_m[index(x, y)];
+    for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, image.height - 1); ++v)
+      for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, image.width - 1); ++u)
+        if (image.range_m[index(u, v)] > 0) clear_m = std::min(clear_m, image.range_m[index(u, v)]);
+    return clear_m;
+  };
+  // Written after all are found, so that none depends on another.
+  std::vector<std::vector<ClearPixel>> found(static_cast<std::size_t>((image.height + kRows - 1) / kRows));
+  pool.run(found.size(), [&](std::size_t task) {
     const int first = static_cast<int>(task) * kRows;
-    for (int y = first; y < std::min(first + kRows, image.height); ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const std::size_t n = index(x, y);
-        if (image.origin[n] != Origin::kOpen || before[n] == 0) continue;
-        float clear_m = before[n];
-        for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, image.height - 1); ++v)
-          for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, image.width - 1); ++u)
-            if (before[index(u, v)] > 0) clear_m = std::min(clear_m, before[index(u, v)]);
-        image.range_m[n] = clear_m;
-      }
-    }
+    for (int y = first; y < std::min(first + kRows, image.height); ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (image.origin[index(x, y)] == Origin::kOpen && image.range_m[index(x, y)] > 0)
+          found[task].push_back({index(x, y), clear_m_at(x, y)});
   });
+  for (const std::vector<ClearPixel>& pixels : found)
+    for (const ClearPixel& pixel : pixels) image.range_m[pixel.index] = pixel.clear_m;
 }
 
 }  // namespace

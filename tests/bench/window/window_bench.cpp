@@ -17,10 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/bench/window/bench_window.h"
 #include "tests/window/robot.h"
-#include "vpe/app/picture/backend_choice.h"
-#include "vpe/app/window_painter.h"
-#include "vpe/window/explore_window.h"
 
 namespace {
 
@@ -164,19 +162,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", screen.why_not().c_str());
     return 1;
   }
-  window::ExploreSetup setup;
-  setup.planet = paging::PlanetFile::open(argv[1]);
-  setup.surface = std::make_shared<const paging::Surface>(setup.planet, std::size_t{128} << 20);
-  setup.make_painter = [planet = setup.planet, common] {
-    return std::make_unique<app::WindowPainter>(planet, common);
-  };
-  setup.display.width = width;
-  setup.display.height = height;
-  setup.display.scale = width > 2000 ? 2 : 1;
+  window::ExploreSetup setup = bench::bench_setup(argv[1], width, height, common);
   setup.drawn_by = drawn_by;
-  setup.suits_rays = [](const core::DrawRequest& r) { return app::suits_rays(app::for_window_rays(r, true)); };
-  setup.as_drawn = app::as_drawn;
-  setup.sun = app::sun_for;
   (void)setup.session.settings.set("lod.frame_ms", "40");
   ExploreWindow window(std::move(setup));
   Robot robot;

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "scripts/flight.h"
+#include "tests/bench/window/bench_window.h"
 #include "tests/window/robot.h"
-#include "vpe/app/picture/backend_choice.h"
-#include "vpe/app/window_painter.h"
 #include "vpe/core/image/image.h"
-#include "vpe/window/explore_window.h"
 
 namespace {
 
@@ -96,18 +94,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", screen.why_not().c_str());
     return 1;
   }
-  window::ExploreSetup setup;
-  setup.planet = paging::PlanetFile::open(argv[1]);
-  setup.surface = std::make_shared<const paging::Surface>(setup.planet, std::size_t{128} << 20);
-  setup.make_painter = [planet = setup.planet] {
-    return std::make_unique<app::WindowPainter>(planet, app::Common{});
-  };
-  setup.display.width = width;
-  setup.display.height = height;
-  setup.display.scale = width > 2000 ? 2 : 1;
-  setup.suits_rays = [](const core::DrawRequest& r) { return app::suits_rays(app::for_window_rays(r, true)); };
-  setup.as_drawn = app::as_drawn;
-  setup.sun = app::sun_for;
+  window::ExploreSetup setup = bench::bench_setup(argv[1], width, height);
   setup.folder = argv[2];
   setup.bookmarks = std::filesystem::path(argv[2]) / "bookmarks";
   setup.session.start = mars::Pose{137.4, -5.9, 3000, 0, -12, 0};
