@@ -69,7 +69,8 @@ TEST(PixelPlan, ManyPixelsAreOneStripAndNoneAreNone) {
 class DrawnPixels : public test_support::GlTest {
  protected:
   std::shared_ptr<const paging::PlanetFile> bumpy() {
-    return test_support::build_fake(dir_ / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height), 20'000);
+    return test_support::build_fake(dir_ / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height),
+                                    20'000);
   }
 };
 
@@ -111,9 +112,9 @@ TEST_F(DrawnPixels, AreThoseOfTheWholeImage) {
             continue;
           }
           const bool is_sky = std::isinf(whole.range_m[n]);
-          const bool agrees =
-              is_sky ? std::isinf(frame.range_m[n])
-                     : std::abs(frame.range_m[n] / whole.range_m[n] - 1) < (mode == core::RayMode::kExact ? 1e-4 : 0.05);
+          const bool agrees = is_sky ? std::isinf(frame.range_m[n])
+                                     : std::abs(frame.range_m[n] / whole.range_m[n] - 1) <
+                                           (mode == core::RayMode::kExact ? 1e-4 : 0.05);
           const bool has_colour = std::abs(frame.colour[n].r - whole.colour[n].r) <= 3;
           if (!agrees || !has_colour) ++differ;
         }
