@@ -97,7 +97,8 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     StereoArguments stereo;
     stereo.layout = core::to_string(*request.stereo);
     stereo.eye_base_m = request.eye_base_m;
-    StereoImage pair = draw_stereo(stereo, draw_request, draw_one);
+    StereoImage pair =
+        draw_stereo(stereo, draw_request, [&](const core::DrawRequest& eye, Eye) { return draw_one(eye); });
     drawn.image = std::move(pair.image);
     drawn.result = std::move(pair.left);
     drawn.result.settled = drawn.result.settled && pair.right.settled && !has_other_palette;

@@ -68,6 +68,12 @@ nlohmann::ordered_json to_json(const Certificate& c) {
     json["middle_bound_px"] = nullptr;
     if (c.middle_bound_px) json["middle_bound_px"] = *c.middle_bound_px;
   }
+  if (c.carried) {
+    json["carrying_px"] = c.carried->added_px;
+    json["carried_share"] = c.carried->carried_share;
+    json["between_share"] = c.carried->between_share;
+    json["drawn_share"] = c.carried->drawn_share;
+  }
   json["tolerance_px"] = c.tolerance_px;
   json["tiles_drawn"] = c.tiles_drawn;
   json["tiles_missing"] = c.tiles_missing;

@@ -28,6 +28,16 @@ struct Certificate {
   double thinning_px = 0;
   // The bound of the middle, where rays are not thinned. Absent if all of the image has one density.
   std::optional<double> middle_bound_px;
+  // Of an image that was carried from another one (vpe/warp): part of shift_bound_px, by how much carried pixels may be off
+  // because of that; and the shares of pixels that were carried, lie between carried ones, and were drawn. Absent where all
+  // pixels were drawn.
+  struct Carried {
+    double added_px = 0;
+    double carried_share = 0;
+    double between_share = 0;
+    double drawn_share = 0;
+  };
+  std::optional<Carried> carried;
   double tolerance_px = 0;  // of the request
   int tiles_drawn = 0;
   int tiles_missing = 0;

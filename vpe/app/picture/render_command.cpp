@@ -20,6 +20,7 @@
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/pair_drawer.h"
 #include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
@@ -32,6 +33,7 @@
 #include "vpe/core/image/image.h"
 #include "vpe/core/json_text.h"
 #include "vpe/gl/context.h"
+#include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::app {
 
@@ -221,6 +223,58 @@ std::optional<core::PaletteEnds> take_palette_of_view(core::DrawRequest& request
   return core::PaletteEnds{*request.settings.palette_low, *request.settings.palette_high};
 }
 
+// Draws both eyes of a pair, the second by carrying.
+struct CarriedEyes {
+  CarriedEyes(core::Renderer& renderer, std::unique_ptr<core::PixelRenderer> rays,
+              const std::shared_ptr<const paging::PlanetFile>& planet, const Common& common,
+              const PairOptions& options)
+      : own_rays(std::move(rays)),
+        surface(planet, memory_bytes(common) / 8),
+        pair(renderer, own_rays ? *own_rays : dynamic_cast<core::PixelRenderer&>(renderer), surface, options) {}
+
+  std::unique_ptr<core::PixelRenderer> own_rays;  // where triangles draw the first eye
+  paging::Surface surface;
+  PairDrawer pair;
+};
+
+// Returns null if both eyes are drawn in full.
+std::unique_ptr<CarriedEyes> carried_eyes(const RenderArguments& arguments, const Common& common,
+                                          const std::shared_ptr<const paging::PlanetFile>& planet,
+                                          const core::DrawRequest& request, core::Renderer& renderer) {
+  if (arguments.stereo.method != "reproject" || arguments.stereo.gap_px == 0) return nullptr;
+  if (const std::string why = why_not_carried(request); !why.empty())
+    throw UsageError("--stereo-method reproject: " + why + "; give --stereo-method full");
+  std::unique_ptr<core::PixelRenderer> rays;
+  if (arguments.image.backend != core::Backend::kRay)
+    rays =
+        voxel::make_ray_renderer(planet, {.memory_bytes = memory_bytes(common) / 2, .threads = common.threads});
+  return std::make_unique<CarriedEyes>(
+      renderer, std::move(rays), planet, common,
+      PairOptions{.gap_px = arguments.stereo.gap_px, .threads = common.threads});
+}
+
+// Writes the second eye with drawn pixels in red, and how far it is from the image that is drawn in full: 50 steps of
+// colour and more are white (Wan 2000, Fig. 8).
+void write_maps(const StereoArguments& stereo, const warp::CarriedImage& carried, const core::Frame& right,
+                const core::DrawRequest& request, core::Renderer& renderer) {
+  constexpr double kWhite = 50;
+  std::vector<base::Rgb> pixels = right.colour;
+  if (!stereo.map.empty()) {
+    for (std::size_t n = 0; n < pixels.size(); ++n)
+      if (carried.origin[n] == warp::Origin::kOpen) pixels[n] = {255, 0, 0};
+    core::write_image(stereo.map, pixels, right.width, right.height);
+  }
+  if (stereo.differences.empty()) return;
+  const core::Frame full = renderer.draw(request).frame;
+  for (std::size_t n = 0; n < pixels.size(); ++n) {
+    const glm::dvec3 apart(right.colour[n].r - full.colour[n].r, right.colour[n].g - full.colour[n].g,
+                           right.colour[n].b - full.colour[n].b);
+    const auto tone = static_cast<std::uint8_t>(255 * std::min(glm::length(apart) / kWhite, 1.0) + 0.5);
+    pixels[n] = {tone, tone, tone};
+  }
+  core::write_image(stereo.differences, pixels, right.width, right.height);
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const std::string identity = take_recipe(arguments, common);
@@ -260,9 +314,8 @@ void render(RenderArguments& arguments, const Common& common) {
                                      arguments.explain_lod.empty() ? nullptr : &explained);
   RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
   recipe.palette = take_palette_of_view(request, planet, common);
-  // Makes the finished image of one camera.
-  const auto draw = [&](const core::DrawRequest& one) {
-    core::DrawResult result = renderer->draw(one);
+  // Finishes the image of one camera.
+  const auto finish = [&](const core::DrawRequest& one, core::DrawResult result) {
     cast = explained;
     require_complete(arguments.image, result);
     if (!common.quiet) {
@@ -285,9 +338,17 @@ void render(RenderArguments& arguments, const Common& common) {
     return result;
   };
   if (arguments.stereo.layout.empty()) {
-    const core::DrawResult result = draw(request);  // sets `cast`
+    const core::DrawResult result = finish(request, renderer->draw(request));  // sets `cast`
     write_image_files(arguments, common, request, result, recipe, *planet, cast);
   } else {
+    const std::unique_ptr<CarriedEyes> carried = carried_eyes(arguments, common, planet, request, *renderer);
+    const auto draw = [&](const core::DrawRequest& one, Eye eye) {
+      if (carried == nullptr || eye == Eye::kMiddle) return finish(one, renderer->draw(one));
+      if (eye == Eye::kLeft) return finish(one, carried->pair.first(one));
+      core::DrawResult right = carried->pair.second(one);
+      write_maps(arguments.stereo, carried->pair.carried(), right.frame, one, *renderer);
+      return finish(one, std::move(right));
+    };
     write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw), recipe, planet->meta());
   }
 }
@@ -325,6 +386,11 @@ void add_render(CLI::App& program, Common& common) {
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   add_stereo_options(*command, arguments->stereo);
+  command->add_option(
+      "--stereo-map", arguments->stereo.map,
+      "Also write the right eye's image with the pixels in red that were drawn, not carried (.png, .jpg)");
+  command->add_option("--stereo-differences", arguments->stereo.differences,
+                      "Also write how far the right eye's image is from the one drawn in full (.png, .jpg)");
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
   add_render_options(*command, arguments->image);

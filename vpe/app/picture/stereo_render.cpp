@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "vpe/base/number.h"
+#include "vpe/warp/carry.h"
 
 namespace vpe::app {
 
@@ -16,10 +17,10 @@ constexpr double kMinConvergence_m = 1e-3;
 constexpr double kMaxConvergence_m = 1e12;
 
 double base_of_view(core::DrawRequest request,
-                    const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
+                    const std::function<core::DrawResult(const core::DrawRequest&, Eye)>& draw) {
   request.want_range = true;
   static_cast<core::Overlays&>(request.settings) = {};
-  const auto base_m = core::comfortable_base_m(draw(request).frame.range_m);
+  const auto base_m = core::comfortable_base_m(draw(request, Eye::kMiddle).frame.range_m);
   if (!base_m)
     throw std::runtime_error(
         "--stereo: the view shows only sky; set the distance between the eyes with --eye-base");
@@ -52,29 +53,47 @@ void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
       .add_option("--convergence", arguments.convergence_m,
                   "Distance at which the eyes' images coincide, metres (default: infinity)")
       ->check(number_within(kMinConvergence_m, kMaxConvergence_m));
+  command
+      .add_option(
+          "--stereo-method", arguments.method,
+          "full: draw both eyes; reproject: draw the left eye, carry its pixels to the right one, and draw what is left "
+          "by rays")
+      ->check(CLI::IsMember({"full", "reproject"}))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--stereo-gap", arguments.gap_px,
+          "With --stereo-method reproject: widest gap between carried pixels that is filled, pixels; 0 draws all")
+      ->check(number_within(0, warp::CarryLimits::kMaxGap_px))
+      ->capture_default_str();
 }
 
 void check_stereo(const StereoArguments& arguments) {
   if (arguments.layout.empty() && (arguments.eye_base_m > 0 || arguments.convergence_m > 0))
     throw UsageError("--eye-base and --convergence need --stereo sbs, ou or anaglyph");
+  const bool carries = !arguments.layout.empty() && arguments.method == "reproject";
+  if (!carries && (arguments.method == "reproject" || !arguments.map.empty() || !arguments.differences.empty()))
+    throw UsageError(
+        "--stereo-method, --stereo-map and --stereo-differences are of pairs: give --stereo, and "
+        "--stereo-method reproject");
 }
 
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
-                        const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
+                        const std::function<core::DrawResult(const core::DrawRequest&, Eye)>& draw) {
   StereoImage drawn;
   drawn.eye_base_m = arguments.eye_base_m > 0 ? arguments.eye_base_m : base_of_view(request, draw);
   std::optional<double> convergence_m;
   if (arguments.convergence_m > 0) convergence_m = arguments.convergence_m;
-  const auto draw_eye = [&](double aside_m) {
+  const auto draw_eye = [&](double aside_m, Eye which) {
     core::DrawRequest eye = request;
     eye.view = core::eye_view(request.view, aside_m, convergence_m);
     if (const std::string error = core::check(eye.view); !error.empty())
       throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) + " m apart: " + error);
-    return draw(eye);
+    return draw(eye, which);
   };
-  drawn.left = draw_eye(-0.5 * drawn.eye_base_m);
+  drawn.left = draw_eye(-0.5 * drawn.eye_base_m, Eye::kLeft);
   const core::RgbImage left = take_image(drawn.left);
-  drawn.right = draw_eye(0.5 * drawn.eye_base_m);
+  drawn.right = draw_eye(0.5 * drawn.eye_base_m, Eye::kRight);
   const core::RgbImage right = take_image(drawn.right);
   drawn.image = core::combine_stereo(left, right, *core::parse_stereo(arguments.layout));
   return drawn;

@@ -1,6 +1,7 @@
 // Stereo images: two views of one scene in one image.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -16,12 +17,20 @@ struct StereoArguments {
   // Distance between both eyes; 0: the distance of the nearest ground / core::kNearestToBase. Smaller: less
   // depth; larger: more depth, harder to fuse.
   double eye_base_m = 0;
-  double convergence_m = 0;  // 0: parallel views
+  double convergence_m = 0;     // 0: parallel views
+  std::string method = "full";  // "reproject": the second eye is carried from the first (pair_drawer.h)
+  // Widest gap between carried pixels that is filled, pixels; 0: both eyes are drawn in full. Smaller: more is drawn.
+  double gap_px = 2;
+  std::string map;          // file of the second eye with drawn pixels in red; empty: none
+  std::string differences;  // file of the differences from the second eye drawn in full; empty: none
 };
+
+// Which image of a pair is drawn. The middle is drawn for its ranges alone.
+enum class Eye : std::uint8_t { kMiddle, kLeft, kRight };
 
 // Adds --stereo and --eye-base.
 void add_eye_options(CLI::App& command, StereoArguments& arguments);
-// Adds --stereo, --eye-base and --convergence.
+// Adds --stereo, --eye-base, --convergence, --stereo-method and --stereo-gap.
 void add_stereo_options(CLI::App& command, StereoArguments& arguments);
 
 // Throws UsageError for options that need --stereo and stand without it.
@@ -34,10 +43,10 @@ struct StereoImage {
   core::DrawResult right;
 };
 
-// Draws the request for both eyes, each as a request of its own. `draw` makes a finished image of one request,
-// overlays included. Without an eye base, this first draws the range from the middle. Throws std::runtime_error
+// Draws the request for both eyes, the left one first, each as a request of its own. `draw` makes a finished image of one
+// request, overlays included. Without an eye base, this first draws the range from the middle. Throws std::runtime_error
 // when that shows sky alone.
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
-                        const std::function<core::DrawResult(const core::DrawRequest&)>& draw);
+                        const std::function<core::DrawResult(const core::DrawRequest&, Eye)>& draw);
 
 }  // namespace vpe::app

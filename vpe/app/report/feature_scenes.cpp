@@ -84,7 +84,8 @@ core::FrameStats ScenePainter::paint(core::Renderer& renderer, const core::DrawR
     StereoArguments stereo;
     stereo.layout = "sbs";
     stereo.eye_base_m = 20;
-    result = std::move(draw_stereo(stereo, request, draw).left);
+    result = std::move(
+        draw_stereo(stereo, request, [&](const core::DrawRequest& eye, Eye) { return draw(eye); }).left);
   } else {
     result = draw(request);
   }
