@@ -12,7 +12,8 @@
 //                                             keeps the next character unchanged
 //   at 10  look yaw=40 pitch=5                head angles relative to the platform
 //   at 12  interest lon=-67 lat=-13 radius=40000 levels=+1
-//   at 14  view fov=30 backend=ray eyes=sbs base=2 size=1920x1080    version 1.1; each key may be left out
+//   at 14  view fov=30 backend=ray eyes=sbs base=2 convergence=90 size=1920x1080
+//                                             version 1.1; each key may be left out
 //   at 20  end                                the last command; without it, the flight ends at its last time
 //
 // `pose` needs lon, lat and one of alt (above the sphere) and height (above the terrain); angles left out are
@@ -21,7 +22,8 @@
 //
 // `view` at a time says how images are drawn: `fov` (vertical), `backend` (polygon, ray, or auto: the program
 // chooses), `eyes` (off, or the layout of a stereo pair: sbs, ou, anaglyph), `base` between the eyes (0: follows
-// the height above the ground) and `size` of an image. The field of view changes smoothly from one such line to
+// the height above the ground), `convergence`, the distance at which both eyes' images coincide (0: infinitely far), and
+// `size` of an image. The field of view changes smoothly from one such line to
 // the next, beginning with that of the `view` line without a time, so a zoom lasts as long as the time between
 // them; two equal ones hold it (scripts/path.h). The other keys hold from their time on, as settings do.
 //
@@ -52,6 +54,7 @@ struct FlightLimits {
   static constexpr double kMaxRadius_m = vpe::core::InterestLimits::kMaxRadius_m;  // of a region of interest
   static constexpr int kMaxLevels = vpe::core::InterestLimits::kMaxLevels;
   static constexpr double kMaxEyeBase_m = 1e9;
+  static constexpr double kMaxConvergence_m = 1e12;
 };
 
 // The versions of the format. Both are read. A flight is written in the oldest one that can hold it.
@@ -131,7 +134,8 @@ struct ViewState {
   std::optional<ImageSize> size;
   std::optional<vpe::core::DrawnBy> backend;  // kAuto: the program chooses
   std::optional<Eyes> eyes;
-  std::optional<double> eye_base_m;  // 0: follows the height above the ground
+  std::optional<double> eye_base_m;     // 0: follows the height above the ground
+  std::optional<double> convergence_m;  // where the eyes' images coincide; 0: infinitely far
 
   bool operator==(const ViewState&) const = default;
 };

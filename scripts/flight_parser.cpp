@@ -239,20 +239,23 @@ class Parser {
     if (version_ == FlightVersion::k1)
       return fail("\"flight 1.1\" as the first command of a flight with \"at TIME view\", found \"flight 1\"");
     std::array fields{Field{"fov", ViewLimits::kMinFov_deg, ViewLimits::kMaxFov_deg},
-                      Field{"base", 0, FlightLimits::kMaxEyeBase_m}};
+                      Field{"base", 0, FlightLimits::kMaxEyeBase_m},
+                      Field{"convergence", 0, FlightLimits::kMaxConvergence_m}};
     std::array texts{TextField{"size"}, TextField{"backend"}, TextField{"eyes"}};
     const std::size_t errors_before = errors_.size();
     (void)read_fields(take_texts(words, 0, texts), fields, texts);
-    const auto& [fov, base] = fields;
+    const auto& [fov, base, convergence] = fields;
     const auto& [size, backend, eyes] = texts;
     ViewState view;
     if (fov.given) view.fov_deg = fov.value;
     if (base.given) view.eye_base_m = base.value;
+    if (convergence.given) view.convergence_m = convergence.value;
     if (size.value) view.size = read_size(*size.value);
     if (backend.value) view.backend = read_backend(*backend.value);
     if (eyes.value) view.eyes = read_eyes(*eyes.value);
     if (errors_.size() != errors_before || full()) return;
-    if (words.empty()) return fail("at least one of fov, base, size, backend, eyes after \"view\"");
+    if (words.empty())
+      return fail("at least one of fov, base, convergence, size, backend, eyes after \"view\"");
     if (!flight_.views.empty() && flight_.views.back().time_s == time_s_)
       return fail("one view at " + format_number(time_s_) + " s, found a second one");
     flight_.views.push_back({time_s_, view});

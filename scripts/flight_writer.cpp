@@ -83,6 +83,7 @@ std::string to_line(const ViewCommand& command) {
   if (view.eyes)
     line.append(" eyes=").append(view.eyes->layout ? vpe::core::to_string(*view.eyes->layout) : "off");
   if (view.eye_base_m) line += " base=" + format_number(*view.eye_base_m);
+  if (view.convergence_m) line += " convergence=" + format_number(*view.convergence_m);
   return line + "\n";
 }
 

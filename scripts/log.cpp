@@ -61,6 +61,7 @@ std::string FlightLog::view_lines(double time_s, const ViewState& view) {
   take(view.backend, view_.view.backend, changed.backend);
   take(view.eyes, view_.view.eyes, changed.eyes);
   take(view.eye_base_m, view_.view.eye_base_m, changed.eye_base_m);
+  take(view.convergence_m, view_.view.convergence_m, changed.convergence_m);
   if (changed == ViewState{}) return {};
   if (version_ == FlightVersion::k1) throw std::logic_error("a log of version 1 has no views");
   std::string lines;

@@ -138,6 +138,7 @@ std::vector<ViewCommand> accumulated(std::vector<ViewCommand> views) {
     keep(now.backend, before.backend);
     keep(now.eyes, before.eyes);
     keep(now.eye_base_m, before.eye_base_m);
+    keep(now.convergence_m, before.convergence_m);
   }
   return views;
 }

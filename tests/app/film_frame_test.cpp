@@ -32,7 +32,7 @@ TEST(FilmFrame, TheEyesAreInItsFingerprint) {
   using vpe::core::StereoLayout;
   const Inputs i;
   const auto of = [&](const std::optional<vpe::core::StereoPair>& stereo) {
-    return fingerprint_of(i.basis, i.request, i.settings, 0, stereo);
+    return fingerprint_of(i.basis, i.request, i.settings, 0, {stereo, {}});
   };
   EXPECT_EQ(of(std::nullopt), i.fingerprint());
   std::set<std::string> seen{i.fingerprint()};
@@ -40,6 +40,9 @@ TEST(FilmFrame, TheEyesAreInItsFingerprint) {
     for (const double base_m : {1.0, std::nextafter(1.0, 2.0)})
       EXPECT_TRUE(seen.insert(of(vpe::core::StereoPair{layout, base_m})).second);
   }
+  const vpe::core::StereoPair pair{StereoLayout::kSideBySide, 1};
+  for (const double gap_px : {1.0, 2.0})
+    EXPECT_TRUE(seen.insert(fingerprint_of(i.basis, i.request, i.settings, 0, {pair, gap_px})).second);
 }
 
 TEST(FilmFrame, EverythingThatAnImageDependsOnIsInItsFingerprint) {

@@ -35,11 +35,13 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.is_below_ground = true;
   c.thinning_px = 2.125;
   c.middle_bound_px = 0.25;
+  c.carried = Certificate::Carried{0.875, 0.9, 0.0625, 0.0375};
   nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find(" " + c.synthetic), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
   EXPECT_NE(meaning.find("thinning_px"), std::string::npos);
+  EXPECT_NE(meaning.find("carrying_px"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
   EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
   EXPECT_NE(meaning.find("below the ground"), std::string::npos);
@@ -52,7 +54,9 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                       {"tiles_drawn", 12},           {"tiles_missing", 3},          {"tiles_substituted", 4},
                       {"share_at_data_limit", 0.25}, {"share_without_data", 0.125}, {"resampling_max_m", 7.5},
                       {"resampling_rms_m", 0.75},    {"source_accuracy_m", 3.0},    {"illustration", true},
-                      {"exaggeration", 2.0},         {"corner_stretch", 2.5},       {"below_ground", true}}));
+                      {"exaggeration", 2.0},         {"corner_stretch", 2.5},       {"below_ground", true},
+                      {"carrying_px", 0.875},        {"carried_share", 0.9},        {"between_share", 0.0625},
+                      {"drawn_share", 0.0375}}));
 }
 
 TEST(Certificate, TheSourcesSayWhatIsSynthetic) {

@@ -48,12 +48,14 @@ TEST_F(CommandWords, OfAnImageHaveSizeBackendEyesAndSettings) {
   options.backend = core::Backend::kRay;
   options.stereo = core::StereoLayout::kAnaglyph;
   options.eye_base_m = 2.5;
+  options.convergence_m = 300;
   Words words = image_words(session_, options);
   EXPECT_EQ(words.front(), "render");
   EXPECT_TRUE(has_pair(words, "--size", "3840x2160"));
   EXPECT_TRUE(has_pair(words, "--backend", "ray"));
   EXPECT_TRUE(has_pair(words, "--stereo", "anaglyph"));
   EXPECT_TRUE(has_pair(words, "--eye-base", "2.5"));
+  EXPECT_TRUE(has_pair(words, "--convergence", "300"));
   EXPECT_TRUE(has_pair(words, "--set", "exaggeration=2"));
   EXPECT_TRUE(has_pair(words, "--set", "overlay.scale=on"));
   EXPECT_FALSE(has_pair(words, "--set", "lod.frame_ms=17"));

@@ -36,6 +36,7 @@ struct Seen {
   core::Backend backend = core::Backend::kPolygon;
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;
+  double convergence_m = 0;
 };
 
 scripts::Flight flight_over(Random& random) {
@@ -43,7 +44,7 @@ scripts::Flight flight_over(Random& random) {
   const std::string lon = std::to_string(lon_deg);
   const scripts::ParsedFlight parsed = scripts::parse_flight(
       "flight 1.1\nview fov=70\nat 0 pose lon=" + lon + " lat=5 alt=90000 pitch=-30\nat 0 view backend=ray\n" +
-          "at 0.5 set colour=slope\nat 0.7 view fov=25.5 eyes=anaglyph base=900\nat 1 look yaw=20\n" +
+          "at 0.5 set colour=slope\nat 0.7 view fov=25.5 eyes=anaglyph base=900 convergence=95000\nat 1 look yaw=20\n" +
           "at 1.5 view eyes=off fov=40\nat 2 pose lon=" + std::to_string(lon_deg + 2) +
           " lat=7 alt=80000 yaw=30 pitch=-20\n",
       "flown");
@@ -79,7 +80,7 @@ std::vector<Seen> recorded_session(int seed, const std::filesystem::path& file) 
     const double dt_s = random.integer(0, 15) == 0 ? random.uniform(0.3, 20) : random.uniform(0.005, 0.05);
     time_s += dt_s;
     Controls controls;
-    switch (random.integer(0, 13)) {
+    switch (random.integer(0, 14)) {
       case 0: session.set_fov(session.screen().fov_deg * random.log_uniform(0.5, 2)); break;
       case 1: session.press(random.integer(0, 1) == 0 ? MouseUse::kHold : MouseUse::kTilt, xy()); break;
       case 2: session.release(); break;
@@ -105,21 +106,27 @@ std::vector<Seen> recorded_session(int seed, const std::filesystem::path& file) 
         (void)session.follow(true);
         break;
       case 11: session.leave_flight(); break;
+      case 12: own.convergence_m = random.integer(0, 1) == 0 ? 0 : random.log_uniform(1e4, 1e7); break;
       default: controls.forward = controls.yaw_right = random.uniform(-1, 1); break;
     }
     if (session.mouse_use() != MouseUse::kNone) session.drag(xy());
     session.advance(dt_s, controls, tracker);
     const DrawChoice chosen = chooser.update(own, session.follows_flight() ? session.player() : nullptr);
     now = core::backend_for(chosen.drawn_by, {false, true, session.pose().alt_m / mars::kMarsRadius_m, now});
-    Seen image{time_s, session.pose(), session.look(), session.view(), session.settings(), now, chosen.stereo,
-               0};
+    Seen image{
+        time_s, session.pose(),      session.look(), session.view(), session.settings(), now, chosen.stereo,
+        0,      chosen.convergence_m};
     image.eye_base_m = chosen.eye_base_m > 0 ? chosen.eye_base_m : core::base_for_height_m(session.height_m());
     scripts::ViewState view{image.view.fov_deg,
                             scripts::ImageSize{image.view.width, image.view.height},
                             core::drawn_by(now),
                             scripts::Eyes{chosen.stereo},
+                            {},
                             {}};
-    if (chosen.stereo) view.eye_base_m = image.eye_base_m;
+    if (chosen.stereo) {
+      view.eye_base_m = image.eye_base_m;
+      view.convergence_m = image.convergence_m;
+    }
     if (random.integer(0, 4) == 0) continue;  // no image is due in this iteration
     EXPECT_EQ(log.frame({time_s, image.pose, image.look, view}, image.settings), time_s);
     seen.push_back(image);
@@ -130,14 +137,15 @@ std::vector<Seen> recorded_session(int seed, const std::filesystem::path& file) 
 
 // Draws an image by rays, for both eyes if there are two.
 std::vector<base::Rgb> drawn(core::Renderer& renderer, const core::View& view, const core::Settings& settings,
-                             const mars::Pose& pose, std::optional<core::StereoLayout> stereo, double base_m) {
+                             const mars::Pose& pose, std::optional<core::StereoLayout> stereo, double base_m,
+                             double convergence_m) {
   core::DrawRequest request;
   request.settings = settings.values();
   request.sun = mars::sun_direction({pose.lon_deg, pose.lat_deg}, request.settings.sun_azimuth_deg,
                                     request.settings.sun_elevation_deg);
   std::vector<core::RgbImage> eyes;
   for (const double side : stereo ? std::vector<double>{-0.5, 0.5} : std::vector<double>{0}) {
-    request.view = core::eye_view(view, side * base_m, std::nullopt);
+    request.view = core::eye_view(view, side * base_m, core::convergence_at(convergence_m));
     core::Frame frame = renderer.draw(request).frame;
     eyes.push_back({frame.width, frame.height, std::move(frame.colour)});
   }
@@ -154,6 +162,7 @@ TEST(Replay, OfTenRecordedSessionsIsEqualToTheBit) {
   const auto renderer = voxel::make_ray_renderer(planet(), {std::size_t{256} << 20, 2});
   int zooms = 0;
   int pairs = 0;
+  int converging = 0;
   int by_rays = 0;
   int images = 0;
   int grounds = 0;
@@ -178,6 +187,8 @@ TEST(Replay, OfTenRecordedSessionsIsEqualToTheBit) {
       ASSERT_EQ(is.view.eyes, scripts::Eyes{was.stereo});
       if (was.stereo) {
         ASSERT_EQ(is.view.eye_base_m, was.eye_base_m);
+        ASSERT_EQ(is.view.convergence_m, was.convergence_m);
+        converging += was.convergence_m > 0 ? 1 : 0;
       }
       core::Settings settings;
       path.apply_settings(was.time_s, settings);
@@ -191,9 +202,10 @@ TEST(Replay, OfTenRecordedSessionsIsEqualToTheBit) {
       view.fov_deg = *is.view.fov_deg;
       view.width = is.view.size->width;
       view.height = is.view.size->height;
-      const auto then = drawn(*renderer, was.view, was.settings, was.pose, was.stereo, was.eye_base_m);
-      const auto again =
-          drawn(*renderer, view, settings, is.pose, is.view.eyes->layout, is.view.eye_base_m.value_or(0));
+      const auto then =
+          drawn(*renderer, was.view, was.settings, was.pose, was.stereo, was.eye_base_m, was.convergence_m);
+      const auto again = drawn(*renderer, view, settings, is.pose, is.view.eyes->layout,
+                               is.view.eye_base_m.value_or(0), is.view.convergence_m.value_or(0));
       ASSERT_EQ(then, again) << seed << " " << n;
       ++images;
       // Sky alone would be equal anyway.
@@ -205,6 +217,7 @@ TEST(Replay, OfTenRecordedSessionsIsEqualToTheBit) {
   // The sessions had what is to be replayed.
   EXPECT_GT(zooms, 100);
   EXPECT_GT(pairs, 300);
+  EXPECT_GT(converging, 30);
   EXPECT_GT(by_rays, 300);
   EXPECT_GE(images, 40);
   EXPECT_GE(grounds, 20);

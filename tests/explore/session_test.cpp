@@ -270,30 +270,32 @@ TEST(Session, AnOffsetOfThePlatformStaysAboveTheGround) {
 
 TEST(DrawChooser, AFlightDecidesWhatTheUserDoesNotChange) {
   const scripts::ParsedFlight parsed = scripts::parse_flight(
-      "flight 1.1\nat 0 pose lon=0 lat=0 alt=1000\nat 1 view backend=ray\nat 2 view eyes=ou base=7\n"
+      "flight 1.1\nat 0 pose lon=0 lat=0 alt=1000\nat 1 view backend=ray\nat 2 view eyes=ou base=7 convergence=50\n"
       "at 3 view backend=polygon eyes=off\nat 9 end\n",
       "test");
   FlightPlayer player(scripts::Path(*parsed.flight, mars::kMarsRadius_m, {}), mars::kMarsRadius_m);
   DrawChooser chooser;
-  DrawChoice own{core::DrawnBy::kAuto, core::StereoLayout::kAnaglyph, 2};
+  DrawChoice own{core::DrawnBy::kAuto, core::StereoLayout::kAnaglyph, 2, 0};
   EXPECT_EQ(chooser.update(own, nullptr), own);
   EXPECT_EQ(chooser.update(own, &player), own);  // the flight has said nothing yet
   player.scrub(1);
-  EXPECT_EQ(chooser.update(own, &player), (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kAnaglyph, 2}));
+  EXPECT_EQ(chooser.update(own, &player),
+            (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kAnaglyph, 2, 0}));
   player.scrub(2);
-  EXPECT_EQ(chooser.update(own, &player), (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kOverUnder, 7}));
+  EXPECT_EQ(chooser.update(own, &player),
+            (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kOverUnder, 7, 50}));
   EXPECT_EQ(chooser.choice().stereo, core::StereoLayout::kOverUnder);
   own.stereo = core::StereoLayout::kSideBySide;
   EXPECT_EQ(chooser.update(own, &player),
-            (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kSideBySide, 2}));
+            (DrawChoice{core::DrawnBy::kRay, core::StereoLayout::kSideBySide, 2, 0}));
   player.scrub(3);
   EXPECT_EQ(chooser.update(own, &player),
-            (DrawChoice{core::DrawnBy::kPolygon, core::StereoLayout::kSideBySide, 2}));
+            (DrawChoice{core::DrawnBy::kPolygon, core::StereoLayout::kSideBySide, 2, 0}));
   own.drawn_by = core::DrawnBy::kRay;
   EXPECT_EQ(chooser.update(own, &player), own);
   EXPECT_EQ(chooser.update(own, nullptr), own);
   player.release_view();
-  EXPECT_EQ(chooser.update(own, &player), (DrawChoice{core::DrawnBy::kPolygon, {}, 7}));
+  EXPECT_EQ(chooser.update(own, &player), (DrawChoice{core::DrawnBy::kPolygon, {}, 7, 50}));
 }
 
 TEST(Session, TheFirstWaypointIsNotSavedYet) {

@@ -252,7 +252,7 @@ TEST(Flight, IsWrittenInTheOldestVersionThatHoldsIt) {
 TEST(Flight, BadViewsWithATimeAreRefused) {
   expect_error(with_lines("at 1 view fov=30\n"), 3, "\"flight 1.1\" as the first command");
   expect_error(in_1_1("at 1 jump\n"), 3, "pose, look, set, interest, view or end after the time");
-  expect_error(in_1_1("at 1 view\n"), 3, "at least one of fov, base, size, backend, eyes");
+  expect_error(in_1_1("at 1 view\n"), 3, "at least one of fov, base, convergence, size, backend, eyes");
   expect_error(in_1_1("at 1 view fov=0\n"), 3, "fov=NUMBER from 0.001 to 179, found \"0\"");
   expect_error(in_1_1("at 1 view fov=180\n"), 3, "fov=NUMBER");
   expect_error(in_1_1("at 1 view base=-1\n"), 3, "base=NUMBER from 0 to 1000000000");
@@ -263,7 +263,8 @@ TEST(Flight, BadViewsWithATimeAreRefused) {
   expect_error(in_1_1("at 1 view eyes=\n"), 3, "eyes=off");
   expect_error(in_1_1("at 1 view eyes=off eyes=off\n"), 3, "eyes once");
   expect_error(in_1_1("at 1 view fov=1 fov=1\n"), 3, "fov once");
-  expect_error(in_1_1("at 1 view zoom=1\n"), 3, "keys fov, base, size, backend, eyes, found \"zoom=1\"");
+  expect_error(in_1_1("at 1 view zoom=1\n"), 3,
+               "keys fov, base, convergence, size, backend, eyes, found \"zoom=1\"");
   expect_error(in_1_1("at 1 view fps=30\n"), 3, "keys fov, base");
   expect_error(in_1_1("at 1 view fov=30\nat 1 view eyes=off\n"), 4, "one view at 1 s");
   expect_error(in_1_1("at 1 end\nat 2 view fov=30\n"), 4, "nothing after \"end\"");
@@ -346,7 +347,7 @@ SetCommand random_set(Random& random, double time_s) {
 // Returns a view with at least one member.
 ViewState random_view(Random& random) {
   ViewState view;
-  const int members = random.integer(1, 31);
+  const int members = random.integer(1, 63);
   const auto has = [members](int n) { return (members >> n & 1) == 1; };
   if (has(0)) view.fov_deg = random.log_uniform(0.001, 179);
   if (has(1)) {
@@ -360,6 +361,7 @@ ViewState random_view(Random& random) {
     if (eyes < 3) view.eyes->layout = static_cast<vpe::core::StereoLayout>(eyes);
   }
   if (has(4)) view.eye_base_m = random.integer(0, 3) == 0 ? 0 : random.log_uniform(1e-9, 1e9);
+  if (has(5)) view.convergence_m = random.integer(0, 3) == 0 ? 0 : random.log_uniform(1e-9, 1e12);
   return view;
 }
 

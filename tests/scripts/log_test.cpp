@@ -113,7 +113,7 @@ TEST(FlightLog, ViewsReplayToTheBit) {
   {
     FlightLog log(folder / "log.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_1);
     double t = 2.5;
-    ViewState view{50, ImageSize{64, 48}, DrawnBy::kRay, Eyes{}, {}};
+    ViewState view{50, ImageSize{64, 48}, DrawnBy::kRay, Eyes{}, {}, {}};
     for (int k = 0; k < 300; ++k) {
       if (random.integer(0, 3) == 0) view.fov_deg = random.log_uniform(1, 140);
       if (random.integer(0, 9) == 0) view.size = ImageSize{k + 1, 48};
@@ -121,6 +121,7 @@ TEST(FlightLog, ViewsReplayToTheBit) {
       if (random.integer(0, 9) == 0) {
         view.eyes = Eyes{static_cast<vpe::core::StereoLayout>(random.integer(0, 2))};
         view.eye_base_m = random.uniform(0, 100);
+        view.convergence_m = random.uniform(0, 1000);
       }
       log.frame(t, {}, {}, {}, {}, view);
       seen.push_back({t, view});

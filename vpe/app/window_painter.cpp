@@ -97,10 +97,13 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     StereoArguments stereo;
     stereo.layout = core::to_string(*request.stereo);
     stereo.eye_base_m = request.eye_base_m;
+    stereo.convergence_m = request.convergence_m;
     StereoImage pair =
         draw_stereo(stereo, draw_request, [&](const core::DrawRequest& eye, Eye) { return draw_one(eye); });
     drawn.image = std::move(pair.image);
     drawn.result = std::move(pair.left);
+    if (pair.right.certificate.shift_bound_px > drawn.result.certificate.shift_bound_px)
+      drawn.result.certificate = pair.right.certificate;
     drawn.result.settled = drawn.result.settled && pair.right.settled && !has_other_palette;
     return drawn;
   }

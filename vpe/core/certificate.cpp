@@ -28,6 +28,12 @@ std::string meaning(const Certificate& c) {
         "shift_bound_px that this adds, and what is narrower than two pixels may be missing there. "
         "middle_bound_px: shift_bound_px of the middle.";
   }
+  if (c.carried) {
+    text +=
+        " Pixels were carried from the picture of the other eye: carrying_px is the part of shift_bound_px that this "
+        "adds; beside that, silhouettes are up to two pixels off. *_share: shares of pixels that were carried, that "
+        "lie between carried ones, and that were drawn.";
+  }
   if (c.is_below_ground) text += " The camera is below the ground: nothing is claimed about the picture.";
   if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped or grey.";
   if (!c.synthetic.empty()) text += " " + c.synthetic;

@@ -25,7 +25,8 @@ enum class StereoLayout : std::uint8_t {
 // Describes the two eyes of an image.
 struct StereoPair {
   StereoLayout layout = StereoLayout::kSideBySide;
-  double eye_base_m = 0;  // > 0
+  double eye_base_m = 0;     // > 0
+  double convergence_m = 0;  // where both images coincide; 0: infinitely far
 };
 
 // Returns the layout named "sbs", "ou" or "anaglyph", or nullopt for other words.
@@ -40,6 +41,11 @@ RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayou
 
 // Replaces the left eye's pixels by the red-cyan anaglyph. Both spans must have the same length.
 void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right);
+
+// Returns a distance of convergence as eye_view() takes it: 0 stands for infinity.
+inline std::optional<double> convergence_at(double convergence_m) {
+  return convergence_m > 0 ? std::optional(convergence_m) : std::nullopt;
+}
 
 // Returns the view of an eye that is shifted by aside_m along the view's right axis (negative: to the left),
 // with parallel axes. With a convergence distance the principal point moves, so that objects at that distance

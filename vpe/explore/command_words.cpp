@@ -74,6 +74,10 @@ std::vector<std::string> image_words(const Session& session, const MakeOptions& 
       words.emplace_back("--eye-base");
       words.push_back(format_number(options.eye_base_m));
     }
+    if (options.convergence_m > 0) {
+      words.emplace_back("--convergence");
+      words.push_back(format_number(options.convergence_m));
+    }
   }
   add_settings(session, options.has_overlays, words);
   add_output(options, words);

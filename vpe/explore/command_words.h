@@ -20,7 +20,8 @@ struct MakeOptions {
   bool has_overlays = true;              // draws the overlays of the session
   std::optional<core::Backend> backend;  // nullopt: the program chooses
   std::optional<core::StereoLayout> stereo;
-  double eye_base_m = 0;  // 0: the program chooses
+  double eye_base_m = 0;     // 0: the program chooses
+  double convergence_m = 0;  // 0: infinitely far
 };
 
 // Returns the words of `vpe render` for the present view, looking where the image looks. Words do not contain the

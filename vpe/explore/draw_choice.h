@@ -12,7 +12,8 @@ namespace vpe::explore {
 struct DrawChoice {
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   std::optional<core::StereoLayout> stereo;
-  double eye_base_m = 0;  // 0: follows the height above the ground
+  double eye_base_m = 0;     // 0: follows the height above the ground
+  double convergence_m = 0;  // where the eyes' images coincide; 0: infinitely far
 
   bool operator==(const DrawChoice&) const = default;
 };

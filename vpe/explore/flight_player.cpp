@@ -102,6 +102,7 @@ scripts::ViewState FlightPlayer::view() const {
   if (keeps_.eyes) {
     view.eyes.reset();
     view.eye_base_m.reset();
+    view.convergence_m.reset();
   }
   return view;
 }

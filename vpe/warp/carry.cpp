@@ -97,8 +97,8 @@ void Carrier::carry(const core::View& from, const core::Frame& frame, const core
     carry_cells(from, frame, to, options, pool, *pixels_, into);
   }
   keep_clear_of_silhouettes(pool, into);
-  into.pixels = {};
-  for (const Origin origin : into.origin) ++into.pixels[static_cast<std::size_t>(origin)];
+  for (const Origin origin : {Origin::kOpen, Origin::kSky, Origin::kCarried, Origin::kBetween})
+    into.pixels[static_cast<std::size_t>(origin)] = std::ranges::count(into.origin, origin);
 }
 
 CarriedImage carry(const core::View& from, const core::Frame& frame, const core::View& to,

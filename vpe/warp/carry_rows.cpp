@@ -5,8 +5,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "vpe/core/ray_lengths.h"
+#include "vpe/warp/row_kernel.h"
 
 namespace vpe::warp {
 
@@ -14,160 +17,24 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// Neighbours of which one is sky are a skyline. Its place between them is unknown, so each pixel takes the nearer one as
-// long as they are hardly farther apart than in the first image.
-constexpr float kMostPartedSkyline_px = 0.125F;
-
 constexpr int kTaskRows = 16;
 
-// Describes how pixels move, in scanning order: from the side that the eye moves to, so that what hides a pixel comes
-// before it. Positions are in pixels of the row in that order.
-struct Scan {
-  bool is_mirrored = false;  // the eye moves to the left: the row is read from its end
-  int count = 0;
-  float shift_px = 0;   // of points at infinity
-  float base_px_m = 0;  // shift of a point at depth 1 m, >= 0
-  float open_from = 0;  // positions from here on are open
-  float most_parted_px = 0;
-  bool filters = true;
-};
-
-// Works on rows one after the other. For one thread.
-class RowCarrier {
- public:
-  explicit RowCarrier(const Scan& scan)
-      : scan_(scan),
-        inverse_depth_(static_cast<std::size_t>(scan.count)),
-        place_(static_cast<std::size_t>(scan.count)),
-        source_(static_cast<std::size_t>(scan.count)),
-        origin_(static_cast<std::size_t>(scan.count)) {}
-
-  std::span<float> inverse_depth() { return inverse_depth_; }  // in, in scanning order; 0 for sky
-
-  // Finds for each pixel the position in the first image's row that it shows.
-  void find_sources();
-
-  // The index of a neighbour and the share of the next; for open pixels the inverse of a depth before which there is
-  // nothing, 0 if none is known.
-  std::span<const float> source() const { return source_; }
-  std::span<const Origin> origin() const { return origin_; }
-  float added_px() const { return added_px_; }
-
- private:
-  void fill(int left, float begin, float reach);
-
-  const Scan& scan_;
-  std::vector<float> inverse_depth_;
-  std::vector<float> place_;
-  std::vector<float> source_;
-  std::vector<Origin> origin_;
-  float added_px_ = 0;
-};
-
-void RowCarrier::find_sources() {
-  const int n = scan_.count;
-  for (int i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    place_[k] = static_cast<float>(i) + 0.5F + scan_.shift_px - scan_.base_px_m * inverse_depth_[k];
-  }
-  std::fill(origin_.begin(), origin_.end(), Origin::kOpen);
-  std::fill(source_.begin(), source_.end(), 0.0F);
-  if (n < 2) return;
-  const float last = place_[static_cast<std::size_t>(n - 1)];
-  float reach = std::min(last + static_cast<float>(kCarriedPosition_px), scan_.open_from);
-  // The last sample has no neighbour beyond it: only a pixel at its very place shows it.
-  if (last < reach) {
-    fill(n - 2, last, reach);
-    reach = last;
-  }
-  for (int i = n - 2; i >= 0; --i) {
-    const float x = place_[static_cast<std::size_t>(i)];
-    if (!(x < reach)) continue;  // hidden
-    fill(i, x, reach);
-    reach = x;
+// Copies a row between the order of the image and that of the scan.
+template <typename T, typename Out>
+void copy_row(const Scan& scan, std::span<const T> row, Out out) {
+  if (scan.is_mirrored) {
+    std::ranges::reverse_copy(row, out);
+  } else {
+    std::ranges::copy(row, out);
   }
 }
 
-// Fills the pixels whose centres are at [begin, reach) with what lies between samples `left` and left + 1.
-void RowCarrier::fill(int left, float begin, float reach) {
-  // Returns the first pixel whose centre is not before a position.
-  const auto pixel_from = [n = static_cast<float>(scan_.count)](float position) {
-    const float clamped = std::clamp(position - 0.5F, 0.0F, n);
-    const auto down = static_cast<int>(clamped);
-    return down + (static_cast<float>(down) < clamped ? 1 : 0);
-  };
-  const int first = pixel_from(begin);
-  const int end = pixel_from(reach);
-  if (first >= end) return;
-  const auto l = static_cast<std::size_t>(left);
-  const float x = place_[l];
-  const float width = place_[l + 1] - x;
-  const bool is_sky = inverse_depth_[l] == 0;
-  const bool is_skyline = is_sky != (inverse_depth_[l + 1] == 0);
-  // How much farther than its neighbour a pixel moves.
-  const float parted_px = std::abs(width - 1);
-  if (!(parted_px <= (is_skyline ? kMostPartedSkyline_px : scan_.most_parted_px))) {
-    // No nearer than the nearer neighbour: silhouettes may reach a pixel farther than their last sample.
-    std::fill(source_.begin() + first, source_.begin() + end,
-              std::max(inverse_depth_[l], inverse_depth_[l + 1]));
-    return;
-  }
-  if (!is_sky || is_skyline) added_px_ = std::max(added_px_, parted_px);
-  for (int k = first; k < end; ++k) {
-    float share = std::min((static_cast<float>(k) + 0.5F - x) / width, 1.0F);
-    const float nearer_px = std::min(share, 1 - share) * width;
-    if (is_skyline) share = share < 0.5F ? 0.0F : 1.0F;
-    const auto p = static_cast<std::size_t>(k);
-    source_[p] = static_cast<float>(left) + share;
-    const bool is_sky_here = is_skyline ? (share == 0) == is_sky : is_sky;
-    origin_[p] = is_sky_here ? Origin::kSky : nearer_px <= 0.5F ? Origin::kCarried : Origin::kBetween;
-  }
-}
+std::uint32_t word(const base::Rgb& c) { return static_cast<std::uint32_t>(c.r | (c.g << 8) | (c.b << 16)); }
 
-// Mixes two colours in 256ths: within half a step of 8 bits.
-base::Rgb between(const base::Rgb& a, const base::Rgb& b, int share_256) {
-  const auto mix = [share_256](std::uint8_t x, std::uint8_t y) {
-    return static_cast<std::uint8_t>(((256 - share_256) * x + share_256 * y + 128) >> 8);
-  };
-  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
+base::Rgb rgb(std::uint32_t word) {
+  return {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
+          static_cast<std::uint8_t>(word >> 16)};
 }
-
-void set_inverse_depth(std::span<const float> length, std::span<const float> range_m, std::span<float> out) {
-  // No number where the range is none: neither that pixel nor what lies beside it is carried.
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  for (std::size_t x = 0; x < out.size(); ++x) out[x] = range_m[x] > 0 ? length[x] / range_m[x] : kNone;
-}
-
-// Writes a row whose first pixel is `first`. `length` is that of the new image's rays.
-void write_row(const Scan& scan, RowCarrier& row, std::span<const float> length, const core::Frame& frame,
-               std::size_t first, CarriedImage& into) {
-  const int n = scan.count;
-  const std::span<const float> inverse_depth = row.inverse_depth();
-  const std::span<const float> source = row.source();
-  const std::span<const Origin> origin = row.origin();
-  const auto colour_at = [&](int sample) {
-    return frame.colour[first + static_cast<std::size_t>(scan.is_mirrored ? n - 1 - sample : sample)];
-  };
-  for (int k = 0; k < n; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const auto x = static_cast<std::size_t>(scan.is_mirrored ? n - 1 - k : k);
-    into.origin[first + x] = origin[at];
-    if (origin[at] == Origin::kOpen) {
-      into.range_m[first + x] = source[at] > 0 ? length[x] / source[at] : 0;
-      if (!into.colour.empty()) into.colour[first + x] = {};
-      continue;
-    }
-    const int left = std::min(static_cast<int>(source[at]), n - 2);
-    const float share = source[at] - static_cast<float>(left);
-    const auto l = static_cast<std::size_t>(left);
-    const float w = inverse_depth[l] + share * (inverse_depth[l + 1] - inverse_depth[l]);
-    into.range_m[first + x] = origin[at] == Origin::kSky ? core::kSkyRange : length[x] / w;
-    if (into.colour.empty()) continue;
-    const int share_256 = scan.filters ? static_cast<int>(share * 256 + 0.5F) : share < 0.5F ? 0 : 256;
-    into.colour[first + x] = between(colour_at(left), colour_at(left + 1), share_256);
-  }
-}
-
 Scan scan_of(const core::View& from, const core::View& to, const CarryOptions& options) {
   const double aside_m = glm::dot(to.camera.position_m - from.camera.position_m, from.camera.axes.right);
   const double shift_px = to.principal_offset_px.x - from.principal_offset_px.x;
@@ -211,20 +78,29 @@ void carry_rows(const core::View& from, const core::Frame& frame, const core::Vi
   std::vector<float> added(static_cast<std::size_t>(tasks));
   const core::RayLengths from_lengths(from);
   const core::RayLengths to_lengths(to);
+  const auto n = static_cast<std::size_t>(scan.count);
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
-    RowCarrier row(scan);
-    std::vector<float> length(static_cast<std::size_t>(scan.count));
+    RowBuffers row(scan);
+    std::vector<float> length(n);
     const int end = std::min((static_cast<int>(task) + 1) * kTaskRows, into.height);
     for (int y = static_cast<int>(task) * kTaskRows; y < end; ++y) {
-      const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(scan.count);
+      const std::size_t first = static_cast<std::size_t>(y) * n;
       from_lengths.row(y, length);
-      set_inverse_depth(length, {frame.range_m.data() + first, length.size()}, row.inverse_depth());
-      if (scan.is_mirrored) std::ranges::reverse(row.inverse_depth());
-      row.find_sources();
+      copy_row(scan, std::span<const float>(length), row.length.begin());
       to_lengths.row(y, length);
-      write_row(scan, row, length, frame, first, into);
+      copy_row(scan, std::span<const float>(length), row.new_length.begin());
+      copy_row(scan, std::span(frame.range_m).subspan(first, n), row.range.begin());
+      if (!frame.colour.empty()) {
+        std::ranges::transform(std::span(frame.colour).subspan(first, n), row.colour.begin(), word);
+        if (scan.is_mirrored) std::reverse(row.colour.begin(), row.colour.begin() + scan.count);
+      }
+      added[task] = std::max(added[task], carry_row(scan, row, !frame.colour.empty()));
+      copy_row(scan, std::span(std::as_const(row.new_range)).first(n), &into.range_m[first]);
+      copy_row(scan, std::span(std::as_const(row.origin)).first(n), &into.origin[first]);
+      if (frame.colour.empty()) continue;
+      if (scan.is_mirrored) std::reverse(row.new_colour.begin(), row.new_colour.begin() + scan.count);
+      std::ranges::transform(std::span(row.new_colour).first(n), &into.colour[first], rgb);
     }
-    added[task] = row.added_px();
   });
   for (const float px : added) into.added_px = std::max(into.added_px, static_cast<double>(px));
   if (into.added_px > 0 || scan.base_px_m > 0) into.added_px += kCarriedPosition_px;

@@ -126,6 +126,7 @@ void ExploreWindow::make(const MakeRequest& request) {
   options.backend = core::named_backend(state_.drawn_by);
   options.stereo = state_.stereo;
   options.eye_base_m = state_.eye_base_m;
+  options.convergence_m = state_.convergence_m;
   switch (request.kind) {
     case MadeKind::kImage: {
       const fs::path file = new_file(setup_.folder, "image-", ".png");

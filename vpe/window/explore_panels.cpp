@@ -79,6 +79,9 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
   widgets.number("Eye distance (m)", state.eye_base_m, 0, 1e6, 1, "%.3g",
                  "0: a thirtieth of the height above ground");
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
+  widgets.number("Convergence (m)", state.convergence_m, 0, 1e12, 10, "%.4g",
+                 "Distance at which the eyes' images coincide; 0: infinitely far");
   ImGui::EndDisabled();
   draw_letters(scale, state, widgets);
 }

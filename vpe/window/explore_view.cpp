@@ -14,15 +14,16 @@
 namespace vpe::window {
 
 void ExploreWindow::request_image() {
-  const explore::DrawChoice chosen = chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m},
-                                                     session_.follows_flight() ? session_.player() : nullptr);
+  const explore::DrawChoice chosen =
+      chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m, state_.convergence_m},
+                      session_.follows_flight() ? session_.player() : nullptr);
   const glm::ivec2 size = image_layout().eye_size();
   session_.resize(size.x, size.y);
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
-  const std::string state = std::string(core::to_string(chosen.drawn_by)) +
-                            (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-                            base::format_number(chosen.eye_base_m);
+  const std::string state =
+      std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
+      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m);
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
@@ -32,6 +33,7 @@ void ExploreWindow::request_image() {
   request.number = ++requested_;
   request.stereo = chosen.stereo;
   request.eye_base_m = eye_base_m();
+  request.convergence_m = chosen.convergence_m;
   request.draw.view = next->view;
   request.draw.settings = session_.settings().values();
   request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
@@ -150,7 +152,8 @@ EyeImage ExploreWindow::eye_image(int eye) const {
   const ViewArea area = layout.eye_area(eye);
   if (layout.eyes() == 1) return {session_.view(), area.x, area.y};
   const double aside_m = (eye == 0 ? -0.5 : 0.5) * eye_base_m();
-  return {core::eye_view(session_.view(), aside_m, std::nullopt), area.x, area.y};
+  return {core::eye_view(session_.view(), aside_m, core::convergence_at(chooser_.choice().convergence_m)),
+          area.x, area.y};
 }
 
 // Finds the ground under the cursor. Over panels there is none.

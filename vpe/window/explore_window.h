@@ -114,8 +114,9 @@ struct WindowState {
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
   core::Backend backend = core::Backend::kPolygon;  // of the last image that was requested
   std::optional<core::StereoLayout> stereo;
-  double eye_base_m = 0;  // 0: a thirtieth of the height above ground
-  double speed = 1;       // factor on motion by hand, kSlowest to kFastest
+  double eye_base_m = 0;     // 0: a thirtieth of the height above ground
+  double convergence_m = 0;  // where both eyes' images coincide; 0: infinitely far
+  double speed = 1;          // factor on motion by hand, kSlowest to kFastest
   bool panels = true;
   double side_px = 0;         // width of the side panel at scale 1; 0: LayoutLimits::kSide_px
   bool side_is_open = false;  // in a narrow window

@@ -78,7 +78,10 @@ std::string SessionRecorder::record_image(ImageRequest& request, const ImageRequ
     view.size = whole_size(session, request.stereo);
     view.backend = core::drawn_by(drawn.backend);
     view.eyes = scripts::Eyes{request.stereo};
-    if (request.stereo) view.eye_base_m = request.eye_base_m;
+    if (request.stereo) {
+      view.eye_base_m = request.eye_base_m;
+      view.convergence_m = request.convergence_m;
+    }
     request.logged_s = log_->frame({time_s, session.pose(), session.look(), view}, settings_of(drawn, session),
                                    request.draw.interest);
   });

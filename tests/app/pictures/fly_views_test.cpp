@@ -145,5 +145,54 @@ TEST_F(FlyViews, ViewsNeedTheirVersion) {
   EXPECT_TRUE(says(old.err, {"f.flight:5: expected \"flight 1.1\""})) << old.err;
 }
 
+TEST_F(FlyViews, PairsConvergeWhereTheFlightSays) {
+  write_text(dir_ / "c.flight",
+             "flight 1.1\nview size=64x48 fov=50 fps=1\nat 0 set mode=coloured\n"
+             "at 0 pose lon=-74 lat=-13 alt=500000 yaw=20 pitch=-60\n"
+             "at 0 view backend=ray eyes=anaglyph base=20000 convergence=550000\n"
+             "at 1 view convergence=0\nat 2 end\n");
+  EXPECT_EQ(summary("film", {}, "c.flight")["made"], 2);
+  const Words pair{"--backend", "ray",      "--size",   "64x48",      "--fov",
+                   "50",        "--stereo", "anaglyph", "--eye-base", "20000"};
+  Words converging = pair;
+  converging.insert(converging.end(), {"--convergence", "550000"});
+  EXPECT_EQ(vpe::core::read_image(frame("film", 0)).pixels, rendered(converging).pixels);
+  EXPECT_EQ(vpe::core::read_image(frame("film", 1)).pixels, rendered(pair).pixels);
+  EXPECT_NE(read_text(frame("film", 0)), read_text(frame("film", 1)));
+}
+
+TEST_F(FlyViews, SecondEyesAreCarriedWhereTheyCanBe) {
+  write_text(dir_ / "pairs.flight",
+             "flight 1.1\nview size=64x48 fov=50 fps=1\nat 0 set mode=lit\n"
+             "at 0 pose lon=-74 lat=-13 alt=500000 yaw=20 pitch=-60\n"
+             "at 0 view backend=ray eyes=anaglyph base=20000\n"
+             "at 2 view backend=polygon\n"
+             "at 3 set mode=wireframe\n"
+             "at 5 end\n");
+  const Words reproject{"--stereo-method", "reproject"};
+  EXPECT_EQ(summary("full", {}, "pairs.flight")["made"], 5);
+  EXPECT_EQ(summary("carried", reproject, "pairs.flight")["made"], 5);
+  for (int k = 0; k < 5; ++k) {
+    // Rays cannot draw wireframes: such pairs are drawn in full.
+    EXPECT_EQ(read_text(frame("full", k)) == read_text(frame("carried", k)), k >= 3) << k;
+  }
+  EXPECT_EQ(vpe::core::read_image(frame("carried", 0)).pixels,
+            rendered({"--backend", "ray", "--size", "64x48", "--fov", "50", "--set", "mode=lit", "--stereo",
+                      "anaglyph", "--eye-base", "20000", "--stereo-method", "reproject"})
+                .pixels);
+  // Frames of the other method are made again, those of the same one are kept.
+  EXPECT_EQ(summary("carried", reproject, "pairs.flight")["kept"], 5);
+  EXPECT_EQ(summary("carried", {"--stereo-method", "reproject", "--stereo-gap", "1.5"}, "pairs.flight")["made"],
+            3);
+  EXPECT_EQ(summary("carried", {"--stereo-method", "reproject", "--stereo-gap", "0"}, "pairs.flight")["made"],
+            3);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(read_text(frame("full", k)), read_text(frame("carried", k))) << k;
+  // Parts make the frames of the whole film.
+  EXPECT_EQ(summary("whole", reproject, "pairs.flight")["made"], 5);
+  summary("parts", {"--stereo-method", "reproject", "--part", "2/2"}, "pairs.flight");
+  summary("parts", {"--stereo-method", "reproject", "--part", "1/2"}, "pairs.flight");
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(read_text(frame("whole", k)), read_text(frame("parts", k))) << k;
+}
+
 }  // namespace
 }  // namespace app_test

@@ -108,13 +108,13 @@ void FrameSink::run() {
 }
 
 FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-                     const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays)
+                     const RenderOptions& options, Makers makers, FrameOverlays& overlays)
     : plan_(plan),
       target_(target),
       frames_(frames),
       first_(first),
       options_(options),
-      make_renderer_(std::move(make_renderer)),
+      makers_(std::move(makers)),
       overlays_(overlays) {}
 
 void FilmMaker::run(FilmReports& reports, ProgressLine& line) {
@@ -158,14 +158,23 @@ void FilmMaker::make_group(std::size_t begin, std::size_t end) {
 
 core::Renderer& FilmMaker::renderer_for(core::Backend backend) {
   if (renderer_ && backend_ == backend) return *renderer_;
+  pair_.reset();
   renderer_.reset();
-  renderer_ = make_renderer_(backend);
+  renderer_ = makers_.renderer(backend);
   backend_ = backend;
   return *renderer_;
 }
 
-core::DrawResult FilmMaker::draw_whole(const core::DrawRequest& request, core::Renderer& renderer) {
-  core::DrawResult result = renderer.draw(request);
+PairDrawer& FilmMaker::pair_for(double gap_px, core::Renderer& renderer) {
+  if (!pair_ || pair_gap_px_ != gap_px) {
+    pair_.reset();
+    pair_ = makers_.pair(renderer, gap_px);
+    pair_gap_px_ = gap_px;
+  }
+  return *pair_;
+}
+
+core::DrawResult FilmMaker::keep_failures(core::DrawResult result) {
   reports_->failures.insert(reports_->failures.end(), result.failures.begin(), result.failures.end());
   require_complete(options_, result);
   return result;
@@ -183,10 +192,15 @@ std::vector<FilmMaker::DrawnEye> FilmMaker::draw_eyes(std::size_t n, const Plann
       paging.next = std::make_shared<const core::DrawRequest>(next.request);
   }
   std::vector<DrawnEye> eyes;
+  PairDrawer* const pair = planned.carried_gap_px ? &pair_for(*planned.carried_gap_px, renderer) : nullptr;
   for (core::DrawRequest& request : planned.requests()) {
     request.paging = paging;
-    DrawnEye eye{request, draw_whole(request, renderer), {}};
-    if (const auto finer = contour_request(request, eye.result)) eye.contours = draw_whole(*finer, renderer);
+    DrawnEye eye{request, {}, {}};
+    eye.result = keep_failures(pair == nullptr ? renderer.draw(request)
+                               : eyes.empty()  ? pair->first(request)
+                                               : pair->second(request));
+    if (const auto finer = contour_request(request, eye.result))
+      eye.contours = keep_failures(renderer.draw(*finer));
     eyes.push_back(std::move(eye));
   }
   return eyes;

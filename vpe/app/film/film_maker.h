@@ -15,6 +15,7 @@
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/pair_drawer.h"
 
 namespace vpe::app {
 
@@ -30,15 +31,19 @@ class FrameSink;
 // Draws on the main thread while another thread encodes earlier frames. Used once, by the main thread.
 //
 // Typical usage:
-//   FilmMaker(plan, target, frames, first, options, make_renderer, overlays).run(reports, line);
+//   FilmMaker(plan, target, frames, first, options, makers, overlays).run(reports, line);
 class FilmMaker {
  public:
-  using MakeRenderer = std::function<std::unique_ptr<core::Renderer>(core::Backend)>;
+  struct Makers {
+    std::function<std::unique_ptr<core::Renderer>(core::Backend)> renderer;
+    // Makes what carries second eyes; may be empty if the plan has none.
+    std::function<std::unique_ptr<PairDrawer>(core::Renderer&, double gap_px)> pair;
+  };
 
   // `first` is the number of frames[0] in the film. A renderer is made when a frame has to be drawn by it. There is
   // one at a time, so that --memory holds also where a flight changes the backend.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-            const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
+            const RenderOptions& options, Makers makers, FrameOverlays& overlays);
 
   // Draws the missing frames, in order. A frame that cannot be drawn, or not completely (unless the options
   // allow that), is marked as failed, and its group is abandoned; the other groups are made. Throws
@@ -54,7 +59,8 @@ class FilmMaker {
   };
   core::Renderer& renderer_for(core::Backend backend);
   std::vector<DrawnEye> draw_eyes(std::size_t n, const PlannedFrame& planned, core::Renderer& renderer);
-  core::DrawResult draw_whole(const core::DrawRequest& request, core::Renderer& renderer);
+  core::DrawResult keep_failures(core::DrawResult result);
+  PairDrawer& pair_for(double gap_px, core::Renderer& renderer);
   core::Frame finish(std::vector<DrawnEye>& eyes, const std::optional<core::StereoPair>& stereo, double time_s);
   void make_group(std::size_t begin, std::size_t end);
   bool draw(std::size_t n);
@@ -67,9 +73,11 @@ class FilmMaker {
   std::span<FilmFrame> frames_;
   std::int64_t first_;
   const RenderOptions& options_;
-  MakeRenderer make_renderer_;
+  Makers makers_;
   FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;
+  std::unique_ptr<PairDrawer> pair_;  // of renderer_, and of a gap
+  double pair_gap_px_ = 0;
   core::Backend backend_ = core::Backend::kPolygon;  // of renderer_
   bool is_prepared_ = false;                         // the target
   FilmReports* reports_ = nullptr;                   // during run()

@@ -12,6 +12,7 @@
 
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/pair_drawer.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/base/number.h"
 #include "vpe/overlay/overlay.h"
@@ -63,8 +64,9 @@ FilmPlan::FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path pa
 std::vector<core::DrawRequest> PlannedFrame::requests() const {
   if (!stereo) return {request};
   std::vector<core::DrawRequest> eyes{request, request};
-  eyes[0].view = core::eye_view(request.view, -0.5 * stereo->eye_base_m, std::nullopt);
-  eyes[1].view = core::eye_view(request.view, 0.5 * stereo->eye_base_m, std::nullopt);
+  const std::optional<double> convergence_m = core::convergence_at(stereo->convergence_m);
+  eyes[0].view = core::eye_view(request.view, -0.5 * stereo->eye_base_m, convergence_m);
+  eyes[1].view = core::eye_view(request.view, 0.5 * stereo->eye_base_m, convergence_m);
   return eyes;
 }
 
@@ -86,7 +88,7 @@ std::optional<core::StereoPair> FilmPlan::stereo_of(const scripts::FlightState& 
         views_.terrain_height_m ? views_.terrain_height_m(place, path_.exaggeration(time_s)) : 0;
     base_m = core::base_for_height_m(state.pose.alt_m - (std::isfinite(ground_m) ? ground_m : 0));
   }
-  return core::StereoPair{*view.eyes->layout, base_m};
+  return core::StereoPair{*view.eyes->layout, base_m, view.convergence_m.value_or(0)};
 }
 
 PlannedFrame FilmPlan::at(std::int64_t frame) const {
@@ -118,6 +120,8 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   // The sun does not move: azimuth and elevation, or the hour, hold at the ground below the flight's start.
   request.sun = sun_for(request.settings, start_);
   request.want_range = overlay::needs_range(request.settings);
+  if (out.stereo && views_.carried_gap_px && why_not_carried(request).empty())
+    out.carried_gap_px = views_.carried_gap_px;
   return out;
 }
 
@@ -131,8 +135,8 @@ std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t be
     frame.time_s = planned.time_s;
     RenderBasis basis = basis_;
     basis.backend = planned.backend;
-    frame.fingerprint =
-        fingerprint_of(basis, planned.request, planned.settings, planned.time_s, planned.stereo);
+    frame.fingerprint = fingerprint_of(basis, planned.request, planned.settings, planned.time_s,
+                                       {planned.stereo, planned.carried_gap_px});
     out.push_back(std::move(frame));
   }
   return out;

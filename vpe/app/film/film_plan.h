@@ -45,6 +45,8 @@ struct PlannedFrame {
   core::Backend backend = core::Backend::kPolygon;
   bool names_backend = false;  // the flight names it
   std::optional<core::StereoPair> stereo;
+  // Widest gap of the second eye, which is carried from the first (PairOptions::gap_px). Absent: all is drawn in full.
+  std::optional<double> carried_gap_px;
 
   // Returns the requests to draw: one, or those of the left and the right eye.
   std::vector<core::DrawRequest> requests() const;
@@ -58,6 +60,8 @@ struct ViewOptions {
   std::optional<core::Settings> named;
   // For eyes whose distance follows the height above the ground. Empty, or unknown terrain: above the sphere.
   scripts::TerrainHeight terrain_height_m;
+  // PlannedFrame::carried_gap_px of pairs that can be carried. Absent: all pairs are drawn in full.
+  std::optional<double> carried_gap_px;
 };
 
 // The ends of the palette where a film shows a value and takes them from its views (film_palette.h).

@@ -47,10 +47,10 @@ std::string FilmSession::missing_from_parts() const {
 }
 
 void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,
-                       const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet) {
+                       const FilmMaker::Makers& makers, FrameOverlays& overlays, bool quiet) {
   try {
     ProgressLine line(quiet);
-    FilmMaker(plan, *target_, frames_, first_, options, make_renderer, overlays).run(reports, line);
+    FilmMaker(plan, *target_, frames_, first_, options, makers, overlays).run(reports, line);
   } catch (const Interrupted& e) {
     throw Interrupted(e.signal(), std::string(e.what()) + ": " + progress_text(kind(), frames_));
   } catch (const std::bad_alloc&) {

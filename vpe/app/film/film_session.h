@@ -28,7 +28,7 @@ struct FilmRequest {
 // Typical usage:
 //   FilmSession session(request);
 //   session.find_stored(plan, threads);
-//   session.make(plan, reports, options, make_renderer, overlays, quiet);
+//   session.make(plan, reports, options, makers, overlays, quiet);
 //   session.finish(head);
 class FilmSession {
  public:
@@ -41,7 +41,7 @@ class FilmSession {
 
   // Makes the missing frames. Throws Interrupted and std::runtime_error, both with the film's progress.
   void make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,
-            const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet);
+            const FilmMaker::Makers& makers, FrameOverlays& overlays, bool quiet);
 
   // Writes the manifest, and joins a video whose frames are all stored. Must not be called after make() threw.
   void finish(const ManifestHead& head);

@@ -20,6 +20,8 @@
 #include "vpe/app/film/film_session.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/pair_drawer.h"
+#include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/planet_argument.h"
@@ -44,6 +46,7 @@ struct FlyArguments {
   bool force = false;
   bool allow_underground = false;
   bool join = false;
+  StereoMethod stereo;
   RenderOptions image;
 };
 
@@ -250,7 +253,8 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
         FilmPlan({version(), planet->meta().identity, chosen.backend, common.memory_mb}, flight.view,
                  scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
                  chosen.settings, parse_interest(image),
-                 {image.backend ? std::nullopt : std::optional(base), terrain})};
+                 {image.backend ? std::nullopt : std::optional(base), terrain,
+                  arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt})};
     if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
     film.plan.take_palettes(*palettes);
     return film;
@@ -345,7 +349,12 @@ void fly(FlyArguments& arguments, const Common& common) {
     is_begun = true;
     return made;
   };
-  session.make(plan, reports, arguments.image, renderer, overlays, common.quiet);
+  const auto pair = [&](core::Renderer& first_eyes, double gap_px) {
+    return std::make_unique<PairDrawer>(
+        first_eyes, planet,
+        PairOptions{.gap_px = gap_px, .memory_bytes = memory_bytes(common) / 4, .threads = common.threads});
+  };
+  session.make(plan, reports, arguments.image, {renderer, pair}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
@@ -383,6 +392,7 @@ void add_fly(CLI::App& program, Common& common) {
   command->add_option("--stats", arguments->stats, "Write one row of figures per frame (.csv, .jsonl)");
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw frames below the ground in one colour, instead of failing before the first frame");
+  add_method_options(*command, arguments->stereo);
   add_render_options(*command, arguments->image);
   add_examples(*command, {{"a video; the same command continues a stopped one",
                            "vpe fly valles.flight mars.vpe -o film.mp4"},

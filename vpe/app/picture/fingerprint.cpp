@@ -24,8 +24,7 @@ void add(Digest& digest, const core::Palette& palette) {
 }  // namespace
 
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s,
-                           const std::optional<core::StereoPair>& stereo) {
+                           const core::Settings& settings, double time_s, const FingerprintEyes& eyes) {
   const core::View& view = request.view;
   Digest digest;
   digest.add(kEncoding).add(basis.program).add(basis.planet).add(core::to_string(basis.backend));
@@ -53,7 +52,11 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
   if (request.keeps_levels) digest.add("keeps levels");
-  if (stereo) digest.add("stereo").add(core::to_string(stereo->layout)).add(stereo->eye_base_m);
+  if (eyes.stereo) {
+    digest.add("stereo").add(core::to_string(eyes.stereo->layout)).add(eyes.stereo->eye_base_m);
+    if (eyes.stereo->convergence_m > 0) digest.add("convergence").add(eyes.stereo->convergence_m);
+  }
+  if (eyes.carried_gap_px) digest.add("carried").add(*eyes.carried_gap_px);
   return digest.hex();
 }
 

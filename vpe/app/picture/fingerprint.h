@@ -18,12 +18,17 @@ struct RenderBasis {
   int memory_mb = 0;  // bounds the number of triangles and the textures
 };
 
+// The eyes of an image.
+struct FingerprintEyes {
+  std::optional<core::StereoPair> stereo;
+  std::optional<double> carried_gap_px;  // of a second eye that is carried from the first
+};
+
 // Returns a digest of everything that the image depends on, so that equal fingerprints mean equal images. Files
 // that the settings name count by their content. The name of the flight and the number of the frame do not
-// count; the time counts only where the image shows it. With `stereo` the request is that of the middle between both
+// count; the time counts only where the image shows it. In stereo the request is that of the middle between both
 // eyes. Throws base::FileError.
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s = 0,
-                           const std::optional<core::StereoPair>& stereo = std::nullopt);
+                           const core::Settings& settings, double time_s = 0, const FingerprintEyes& eyes = {});
 
 }  // namespace vpe::app

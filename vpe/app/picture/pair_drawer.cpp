@@ -7,6 +7,7 @@
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/image/edge_filter.h"
 #include "vpe/core/ray_lengths.h"
+#include "vpe/voxel/ray_renderer.h"
 #include "vpe/voxel/ray_request.h"
 
 namespace vpe::app {
@@ -35,19 +36,28 @@ core::Certificate::Carried shares_of(const warp::CarriedImage& image) {
   return carried;
 }
 
-// Takes the larger bound of both.
-void add(const core::Certificate& other, core::Certificate& certificate) {
+// Completes the certificate of the drawn pixels by that of the image that the others come from, and by what carrying adds.
+void state(const warp::CarriedImage& image, const core::Certificate& first, core::Certificate& certificate) {
   const auto larger = [&](double core::Certificate::*bound) {
-    certificate.*bound = std::max(certificate.*bound, other.*bound);
+    certificate.*bound = std::max(certificate.*bound, first.*bound);
   };
   larger(&core::Certificate::geometric_error_m);
   larger(&core::Certificate::screen_space_error_px);
   larger(&core::Certificate::quantisation_m);
   larger(&core::Certificate::quantisation_px);
   larger(&core::Certificate::shift_bound_px);
+  larger(&core::Certificate::thinning_px);
   larger(&core::Certificate::corner_stretch);
-  certificate.tiles_missing += other.tiles_missing;
-  certificate.tiles_substituted += other.tiles_substituted;
+  certificate.tiles_missing += first.tiles_missing;
+  certificate.tiles_substituted += first.tiles_substituted;
+  certificate.carried = shares_of(image);
+  const double kept_share = 1 - certificate.carried->drawn_share;
+  if (certificate.nodata_share) *certificate.nodata_share += kept_share * first.nodata_share.value_or(0);
+  certificate.share_at_data_limit = certificate.carried->drawn_share * certificate.share_at_data_limit +
+                                    kept_share * first.share_at_data_limit;
+  certificate.shift_bound_px += image.added_px;
+  certificate.image_bound_px.reset();
+  certificate.middle_bound_px.reset();
 }
 
 }  // namespace
@@ -59,9 +69,18 @@ std::string why_not_carried(const core::DrawRequest& request) {
   return voxel::why_not(request);
 }
 
-PairDrawer::PairDrawer(core::Renderer& renderer, core::PixelRenderer& rays, const paging::Surface& surface,
+PairDrawer::PairDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
                        const PairOptions& options)
-    : renderer_(renderer), rays_(rays), surface_(surface), options_(options), pool_(options.threads) {}
+    : renderer_(renderer),
+      rays_(dynamic_cast<core::PixelRenderer*>(&renderer)),
+      surface_(planet, options.memory_bytes / 4),
+      options_(options),
+      pool_(options.threads) {
+  if (rays_ != nullptr) return;
+  own_rays_ = voxel::make_ray_renderer(
+      planet, {.memory_bytes = options.memory_bytes / 4 * 3, .threads = options.threads});
+  rays_ = own_rays_.get();
+}
 
 void PairDrawer::finish(const core::DrawRequest& request, core::Frame& frame) {
   if (request.settings.smooth_edges && !frame.colour.empty()) {
@@ -85,22 +104,22 @@ core::DrawResult PairDrawer::first(const core::DrawRequest& request) {
 
 core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
   if (!has_first_) throw std::logic_error("PairDrawer: there is no first eye");
+  carried_ = {};
+  const double ground_m =
+      paging::distance_to_ground_m(surface_, request.view.camera.position_m, request.settings.exaggeration);
+  if (certificate_.is_below_ground || ground_m == 0) return renderer_.draw(request);
   warp::CarryOptions options;
   options.gap_px = options_.gap_px;
   options.filters = options_.filters;
-  options.nearest_m = kOfDistance * paging::distance_to_ground_m(surface_, request.view.camera.position_m,
-                                                                 request.settings.exaggeration);
+  options.nearest_m = kOfDistance * ground_m;
   carrier_.carry(view_, raw_, request.view, options, pool_, carried_);
   wanted_.resize(carried_.origin.size());
   std::ranges::transform(carried_.origin, wanted_.begin(), [](warp::Origin origin) {
     return static_cast<std::uint8_t>(origin == warp::Origin::kOpen ? 1 : 0);
   });
   core::Frame frame{carried_.width, carried_.height, carried_.colour, carried_.range_m};
-  core::DrawResult result = rays_.draw_pixels(raw(request), {wanted_, carried_.range_m}, frame);
-  add(certificate_, result.certificate);
-  result.certificate.carried = shares_of(carried_);
-  result.certificate.shift_bound_px += carried_.added_px;
-  result.certificate.image_bound_px.reset();
+  core::DrawResult result = rays_->draw_pixels(raw(request), {wanted_, carried_.range_m}, frame);
+  state(carried_, certificate_, result.certificate);
   finish(request, frame);
   result.frame = std::move(frame);
   return result;

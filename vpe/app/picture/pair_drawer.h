@@ -1,12 +1,14 @@
 // Draws the two eyes of a pair, the second one by carrying the first (docs/design/warp.md).
 //
 // Typical usage:
-//   PairDrawer pair(*renderer, *rays, surface, {.gap_px = 2});
+//   PairDrawer pair(*renderer, planet, {.gap_px = 2});
 //   core::DrawResult left = pair.first(left_request);
 //   core::DrawResult right = pair.second(right_request);
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
@@ -18,29 +20,32 @@ namespace vpe::app {
 struct PairOptions {
   double gap_px = 2;  // CarryOptions::gap_px, > 0
   bool filters = true;
-  int threads = 0;
+  // Bound of the memory beside the first eyes' renderer. Smaller: tiles are loaded again.
+  std::size_t memory_bytes = std::size_t{256} << 20;
+  int threads = 0;  // 0: all cores
 };
 
 // Returns why a request's second eye cannot be carried, or "": rays have to be able to draw it, in perspective with one
 // sample a pixel.
 std::string why_not_carried(const core::DrawRequest& request);
 
-// One thread at a time.
+// Draws pairs one after the other. One thread at a time.
 class PairDrawer {
  public:
-  // All arguments must outlive this. `renderer` draws the first eye, `rays` what is left of the second; they may be the
-  // same.
-  PairDrawer(core::Renderer& renderer, core::PixelRenderer& rays, const paging::Surface& surface,
+  // `renderer` draws the first eyes and must outlive this. If it draws rays it also draws what is left of the second eyes,
+  // else this has rays of its own.
+  PairDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
              const PairOptions& options);
 
-  // Draws the first eye in full: the image that `renderer` draws, to the bit where that is the ray backend.
+  // Draws the first eye in full: the image that `renderer` draws, to the bit where it draws rays.
   core::DrawResult first(const core::DrawRequest& request);
 
   // Draws the second eye. Its certificate has the larger bounds of the first eye's and of the pixels that were drawn, and
-  // what carrying adds. Throws std::logic_error without a first eye.
+  // what carrying adds. Draws all pixels if the camera of either eye is below the ground. Throws std::logic_error without
+  // a first eye.
   core::DrawResult second(const core::DrawRequest& request);
 
-  // Returns where each pixel of the last second eye comes from.
+  // Returns where each pixel of the last second eye comes from; without pixels if all were drawn.
   const warp::CarriedImage& carried() const { return carried_; }
 
  private:
@@ -48,8 +53,9 @@ class PairDrawer {
   void finish(const core::DrawRequest& request, core::Frame& frame);
 
   core::Renderer& renderer_;
-  core::PixelRenderer& rays_;
-  const paging::Surface& surface_;
+  std::unique_ptr<core::PixelRenderer> own_rays_;  // null if renderer_ draws rays
+  core::PixelRenderer* rays_ = nullptr;
+  paging::Surface surface_;
   PairOptions options_;
   base::ThreadPool pool_;
   core::View view_;  // of the first eye

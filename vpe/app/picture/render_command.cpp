@@ -33,7 +33,6 @@
 #include "vpe/core/image/image.h"
 #include "vpe/core/json_text.h"
 #include "vpe/gl/context.h"
-#include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::app {
 
@@ -223,34 +222,17 @@ std::optional<core::PaletteEnds> take_palette_of_view(core::DrawRequest& request
   return core::PaletteEnds{*request.settings.palette_low, *request.settings.palette_high};
 }
 
-// Draws both eyes of a pair, the second by carrying.
-struct CarriedEyes {
-  CarriedEyes(core::Renderer& renderer, std::unique_ptr<core::PixelRenderer> rays,
-              const std::shared_ptr<const paging::PlanetFile>& planet, const Common& common,
-              const PairOptions& options)
-      : own_rays(std::move(rays)),
-        surface(planet, memory_bytes(common) / 8),
-        pair(renderer, own_rays ? *own_rays : dynamic_cast<core::PixelRenderer&>(renderer), surface, options) {}
-
-  std::unique_ptr<core::PixelRenderer> own_rays;  // where triangles draw the first eye
-  paging::Surface surface;
-  PairDrawer pair;
-};
-
-// Returns null if both eyes are drawn in full.
-std::unique_ptr<CarriedEyes> carried_eyes(const RenderArguments& arguments, const Common& common,
-                                          const std::shared_ptr<const paging::PlanetFile>& planet,
-                                          const core::DrawRequest& request, core::Renderer& renderer) {
-  if (arguments.stereo.method != "reproject" || arguments.stereo.gap_px == 0) return nullptr;
+// Returns what draws the eyes of a pair, or null if both are drawn in full.
+std::unique_ptr<PairDrawer> pair_drawer(const RenderArguments& arguments, const Common& common,
+                                        const std::shared_ptr<const paging::PlanetFile>& planet,
+                                        const core::DrawRequest& request, core::Renderer& renderer) {
+  if (!arguments.stereo.method.carries()) return nullptr;
   if (const std::string why = why_not_carried(request); !why.empty())
     throw UsageError("--stereo-method reproject: " + why + "; give --stereo-method full");
-  std::unique_ptr<core::PixelRenderer> rays;
-  if (arguments.image.backend != core::Backend::kRay)
-    rays =
-        voxel::make_ray_renderer(planet, {.memory_bytes = memory_bytes(common) / 2, .threads = common.threads});
-  return std::make_unique<CarriedEyes>(
-      renderer, std::move(rays), planet, common,
-      PairOptions{.gap_px = arguments.stereo.gap_px, .threads = common.threads});
+  return std::make_unique<PairDrawer>(renderer, planet,
+                                      PairOptions{.gap_px = arguments.stereo.method.gap_px,
+                                                  .memory_bytes = memory_bytes(common) / 4,
+                                                  .threads = common.threads});
 }
 
 // Writes the second eye with drawn pixels in red, and how far it is from the image that is drawn in full: 50 steps of
@@ -341,12 +323,12 @@ void render(RenderArguments& arguments, const Common& common) {
     const core::DrawResult result = finish(request, renderer->draw(request));  // sets `cast`
     write_image_files(arguments, common, request, result, recipe, *planet, cast);
   } else {
-    const std::unique_ptr<CarriedEyes> carried = carried_eyes(arguments, common, planet, request, *renderer);
+    const std::unique_ptr<PairDrawer> pair = pair_drawer(arguments, common, planet, request, *renderer);
     const auto draw = [&](const core::DrawRequest& one, Eye eye) {
-      if (carried == nullptr || eye == Eye::kMiddle) return finish(one, renderer->draw(one));
-      if (eye == Eye::kLeft) return finish(one, carried->pair.first(one));
-      core::DrawResult right = carried->pair.second(one);
-      write_maps(arguments.stereo, carried->pair.carried(), right.frame, one, *renderer);
+      if (pair == nullptr || eye == Eye::kMiddle) return finish(one, renderer->draw(one));
+      if (eye == Eye::kLeft) return finish(one, pair->first(one));
+      core::DrawResult right = pair->second(one);
+      write_maps(arguments.stereo, pair->carried(), right.frame, one, *renderer);
       return finish(one, std::move(right));
     };
     write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw), recipe, planet->meta());
@@ -386,11 +368,6 @@ void add_render(CLI::App& program, Common& common) {
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   add_stereo_options(*command, arguments->stereo);
-  command->add_option(
-      "--stereo-map", arguments->stereo.map,
-      "Also write the right eye's image with the pixels in red that were drawn, not carried (.png, .jpg)");
-  command->add_option("--stereo-differences", arguments->stereo.differences,
-                      "Also write how far the right eye's image is from the one drawn in full (.png, .jpg)");
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
   add_render_options(*command, arguments->image);

@@ -22,8 +22,10 @@ constexpr char kRecipeKeyword[] = "vpe";
 constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 32;
 
 ordered_json eyes_json(const StereoArguments& stereo) {
-  return {
+  ordered_json out{
       {"layout", stereo.layout}, {"eye_base_m", stereo.eye_base_m}, {"convergence_m", stereo.convergence_m}};
+  if (stereo.method.carries()) out["reproject_gap_px"] = stereo.method.gap_px;
+  return out;
 }
 
 ordered_json recipe_json(const RenderRecipe& r) {
@@ -64,6 +66,8 @@ RenderRecipe recipe_from(const nlohmann::json& top) {
     if (!core::parse_stereo(r.stereo.layout)) throw core::ImageError("its recipe names another stereo layout");
     r.stereo.eye_base_m = stereo.at("eye_base_m").get<double>();
     r.stereo.convergence_m = stereo.at("convergence_m").get<double>();
+    if (stereo.contains("reproject_gap_px"))
+      r.stereo.method = {"reproject", stereo["reproject_gap_px"].get<double>()};
   }
   r.allow_underground = from.value("allow_underground", false);
   return r;

@@ -15,9 +15,10 @@ namespace {
 
 // Options that the recipe of an image sets. A configuration file may have defaults of these; naming one beside
 // --from-image contradicts it.
-constexpr std::array<std::string_view, 14> kOptionsOfRecipes{
-    "--pose",      "--height", "--cull-from", "--size",   "--fov",      "--set",         "--backend",
-    "--tolerance", "--sun",    "--interest",  "--stereo", "--eye-base", "--convergence", "--latitude"};
+constexpr std::array<std::string_view, 16> kOptionsOfRecipes{
+    "--pose",        "--height",    "--cull-from",     "--size",      "--fov",    "--set",
+    "--backend",     "--tolerance", "--sun",           "--interest",  "--stereo", "--eye-base",
+    "--convergence", "--latitude",  "--stereo-method", "--stereo-gap"};
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
@@ -62,7 +63,10 @@ std::string take_recipe(RenderArguments& arguments, const Common& common) {
   arguments.image.tolerance_px = RenderOptions().tolerance_px;
   arguments.image.sun.clear();
   arguments.image.interest = recipe.interest;
-  arguments.stereo = recipe.stereo;
+  // The maps are outputs of this run.
+  const StereoArguments asked = std::exchange(arguments.stereo, recipe.stereo);
+  arguments.stereo.map = asked.map;
+  arguments.stereo.differences = asked.differences;
   arguments.allow_underground = recipe.allow_underground;
   return recipe.planet;
 }
@@ -91,7 +95,9 @@ void check_render_outputs(const RenderArguments& arguments, const core::Settings
                  {"--range", arguments.range, FileKind::kRange},
                  {"--certificate", arguments.certificate, FileKind::kCertificate},
                  {"--explain-lod", arguments.explain_lod, FileKind::kExplanation},
-                 {"--overlay-layer", arguments.overlay_layer, FileKind::kImage}},
+                 {"--overlay-layer", arguments.overlay_layer, FileKind::kImage},
+                 {"--stereo-map", arguments.stereo.map, FileKind::kImage},
+                 {"--stereo-differences", arguments.stereo.differences, FileKind::kImage}},
                 {arguments.planet, settings.names, settings.palette});
   check_overlay_layer(arguments.overlay_layer, settings);
   check_stereo(arguments.stereo);

@@ -47,35 +47,48 @@ void add_eye_options(CLI::App& command, StereoArguments& arguments) {
       ->check(number_within(kMinBase_m, kMaxBase_m));
 }
 
+void add_method_options(CLI::App& command, StereoMethod& method) {
+  command
+      .add_option(
+          "--stereo-method", method.name,
+          "full: draw both eyes; reproject: draw the left eye, carry its pixels to the right one, and draw what "
+          "is left by rays")
+      ->check(CLI::IsMember({"full", "reproject"}))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--stereo-gap", method.gap_px,
+          "With --stereo-method reproject: widest gap between carried pixels that is filled, pixels; the error "
+          "that this adds is less by one; 0: draw both eyes")
+      ->check(number_within(0, warp::CarryLimits::kMaxGap_px))
+      ->capture_default_str();
+}
+
 void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
   add_eye_options(command, arguments);
   command
       .add_option("--convergence", arguments.convergence_m,
                   "Distance at which the eyes' images coincide, metres (default: infinity)")
       ->check(number_within(kMinConvergence_m, kMaxConvergence_m));
-  command
-      .add_option(
-          "--stereo-method", arguments.method,
-          "full: draw both eyes; reproject: draw the left eye, carry its pixels to the right one, and draw what is left "
-          "by rays")
-      ->check(CLI::IsMember({"full", "reproject"}))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--stereo-gap", arguments.gap_px,
-          "With --stereo-method reproject: widest gap between carried pixels that is filled, pixels; 0 draws all")
-      ->check(number_within(0, warp::CarryLimits::kMaxGap_px))
-      ->capture_default_str();
+  add_method_options(command, arguments.method);
+  command.add_option(
+      "--stereo-map", arguments.map,
+      "With --stereo-method reproject: also write the right eye's image with the drawn pixels in red (.png, .jpg)");
+  command.add_option(
+      "--stereo-differences", arguments.differences,
+      "With --stereo-method reproject: also write how far the right eye's image is from the one that is "
+      "drawn in full (.png, .jpg)");
 }
 
 void check_stereo(const StereoArguments& arguments) {
   if (arguments.layout.empty() && (arguments.eye_base_m > 0 || arguments.convergence_m > 0))
     throw UsageError("--eye-base and --convergence need --stereo sbs, ou or anaglyph");
-  const bool carries = !arguments.layout.empty() && arguments.method == "reproject";
-  if (!carries && (arguments.method == "reproject" || !arguments.map.empty() || !arguments.differences.empty()))
+  if (arguments.layout.empty() && arguments.method.name == "reproject")
+    throw UsageError("--stereo-method reproject needs --stereo sbs, ou or anaglyph");
+  if ((!arguments.map.empty() || !arguments.differences.empty()) &&
+      (arguments.layout.empty() || !arguments.method.carries()))
     throw UsageError(
-        "--stereo-method, --stereo-map and --stereo-differences are of pairs: give --stereo, and "
-        "--stereo-method reproject");
+        "--stereo-map and --stereo-differences show a carried eye: give --stereo and --stereo-method reproject");
 }
 
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,

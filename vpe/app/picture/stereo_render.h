@@ -11,16 +11,23 @@
 
 namespace vpe::app {
 
+// Values of the options that add_method_options() adds: how the second eye is drawn.
+struct StereoMethod {
+  std::string name = "full";  // "reproject": the second eye is carried from the first (pair_drawer.h)
+  // Widest gap between carried pixels that is filled, pixels; 0: both eyes are drawn in full. Smaller: more is drawn.
+  double gap_px = 2;
+
+  bool carries() const { return name == "reproject" && gap_px > 0; }
+};
+
 // Values of the options that add_stereo_options() adds.
 struct StereoArguments {
   std::string layout;  // empty: no stereo
   // Distance between both eyes; 0: the distance of the nearest ground / core::kNearestToBase. Smaller: less
   // depth; larger: more depth, harder to fuse.
   double eye_base_m = 0;
-  double convergence_m = 0;     // 0: parallel views
-  std::string method = "full";  // "reproject": the second eye is carried from the first (pair_drawer.h)
-  // Widest gap between carried pixels that is filled, pixels; 0: both eyes are drawn in full. Smaller: more is drawn.
-  double gap_px = 2;
+  double convergence_m = 0;  // 0: parallel views
+  StereoMethod method;
   std::string map;          // file of the second eye with drawn pixels in red; empty: none
   std::string differences;  // file of the differences from the second eye drawn in full; empty: none
 };
@@ -30,7 +37,9 @@ enum class Eye : std::uint8_t { kMiddle, kLeft, kRight };
 
 // Adds --stereo and --eye-base.
 void add_eye_options(CLI::App& command, StereoArguments& arguments);
-// Adds --stereo, --eye-base, --convergence, --stereo-method and --stereo-gap.
+// Adds --stereo-method and --stereo-gap.
+void add_method_options(CLI::App& command, StereoMethod& method);
+// Adds --stereo, --eye-base, --convergence, those of add_method_options(), --stereo-map and --stereo-differences.
 void add_stereo_options(CLI::App& command, StereoArguments& arguments);
 
 // Throws UsageError for options that need --stereo and stand without it.

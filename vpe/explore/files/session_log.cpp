@@ -28,7 +28,9 @@ bool fits(const scripts::ViewState& view) {
   return (!view.fov_deg || (*view.fov_deg >= Limits::kMinFov_deg && *view.fov_deg <= Limits::kMaxFov_deg)) &&
          (!view.size || (side_fits(view.size->width) && side_fits(view.size->height))) &&
          (!view.eye_base_m ||
-          (*view.eye_base_m >= 0 && *view.eye_base_m <= scripts::FlightLimits::kMaxEyeBase_m));
+          (*view.eye_base_m >= 0 && *view.eye_base_m <= scripts::FlightLimits::kMaxEyeBase_m)) &&
+         (!view.convergence_m ||
+          (*view.convergence_m >= 0 && *view.convergence_m <= scripts::FlightLimits::kMaxConvergence_m));
 }
 
 bool fits(const SessionLog::Frame& f) {
@@ -60,6 +62,7 @@ void continue_view(scripts::ViewState& view, const scripts::ViewState& before) {
   take(view.backend, before.backend);
   take(view.eyes, before.eyes);
   take(view.eye_base_m, before.eye_base_m);
+  take(view.convergence_m, before.convergence_m);
 }
 
 double just_after(double time_s) { return std::nextafter(time_s, std::numeric_limits<double>::infinity()); }

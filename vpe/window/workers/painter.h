@@ -24,6 +24,7 @@ struct ImageRequest {
   double px_per_screen_px = 1;  // of the image, along a side
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;           // with stereo; > 0
+  double convergence_m = 0;        // with stereo; where both images coincide; 0: infinitely far
   double flight_time_s = 0;        // for the overlay of that name
   std::optional<double> logged_s;  // its time in the log while a session is recorded
 };
@@ -32,7 +33,8 @@ struct ImageRequest {
 struct DrawnImage {
   ImageRequest request;
   core::RgbImage image;  // in stereo of another size than the view; empty after an error
-  // Without its pixels. In stereo its figures and certificate are those of the left eye.
+  // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
+  // larger bound.
   core::DrawResult result;
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;

@@ -1,0 +1,200 @@
+// Pairs whose second eye is carried, against pairs that are drawn in full.
+#include "vpe/app/picture/pair_drawer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "tests/gl/gl_fixture.h"
+#include "vpe/core/stereo.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace {
+
+namespace core = vpe::core;
+namespace warp = vpe::warp;
+using test_support::Random;
+using vpe::app::PairDrawer;
+
+constexpr unsigned kSeed = 20261125;
+constexpr int kWidth = 96;
+constexpr int kHeight = 64;
+
+struct Eyes {
+  core::DrawRequest left;
+  core::DrawRequest right;
+};
+
+// Two eyes `base_m` apart; by default a thirtieth of the height.
+Eyes eyes_at(const mars::Pose& pose, double radius_m, double base_m) {
+  core::DrawRequest request = test_support::request_for(pose, radius_m, kWidth, kHeight);
+  request.settings.mode = core::Mode::kLit;
+  request.want_range = true;
+  Eyes eyes{request, request};
+  eyes.left.view = core::eye_view(request.view, -0.5 * base_m, std::nullopt);
+  eyes.right.view = core::eye_view(request.view, 0.5 * base_m, std::nullopt);
+  return eyes;
+}
+
+class PairDrawerTest : public test_support::GlTest {
+ protected:
+  PairDrawerTest()
+      : planet_(test_support::build_fake(dir_ / "bumpy.vpe",
+                                         test_support::FakeElevation(test_support::bumpy_height), 20'000)),
+        rays_(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2})) {}
+
+  // Returns a pose somewhere above the ground that looks ahead or down.
+  mars::Pose any_pose(Random& random, double& height_m) const {
+    height_m = std::pow(10.0, random.uniform(3.0, 5.8));
+    const double lon_deg = random.uniform(-180, 180);
+    const double lat_deg = random.uniform(-89.9, 89.9);
+    const double ground_m =
+        paging::Surface(planet_, std::size_t{1} << 20).at(mars::direction({lon_deg, lat_deg}), 1).height_m;
+    return {lon_deg,
+            lat_deg,
+            ground_m + height_m,
+            random.uniform(0, 360),
+            random.uniform(-90, 5),
+            random.uniform(-20, 20)};
+  }
+
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::unique_ptr<core::PixelRenderer> rays_;
+};
+
+// Returns by how much a carried pixel is off, as a difference of parallax, from the best that the full image has within two
+// pixels: silhouettes are those of the first image's pixels.
+double off_px(const core::DrawRequest& eye, double base_m, const core::Frame& is, const core::Frame& full,
+              int x, int y) {
+  constexpr int kAround = 2;
+  const auto parallax_px = [&](const core::Frame& frame, int u, int v) {
+    const double depth_m = static_cast<double>(frame.range_m[static_cast<std::size_t>(v * kWidth + u)]) *
+                           glm::dot(core::pixel_ray(eye.view, u + 0.5, v + 0.5), eye.view.camera.axes.forward);
+    return base_m * core::focal_px(eye.view) / depth_m;
+  };
+  const double carried_px = parallax_px(is, x, y);
+  double best_px = std::numeric_limits<double>::infinity();
+  for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, kHeight - 1); ++v)
+    for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, kWidth - 1); ++u)
+      best_px = std::min(best_px, std::abs(carried_px - parallax_px(full, u, v)));
+  return best_px;
+}
+
+TEST_F(PairDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
+  Random random(kSeed);
+  PairDrawer pair(*rays_, planet_, {.threads = 2});
+  double most_share = 0;
+  double carried = 0;
+  for (int n = 0; n < 500; ++n) {
+    double height_m = 0;
+    const mars::Pose pose = any_pose(random, height_m);
+    const double base_m = height_m * std::pow(10.0, random.uniform(-3.0, -0.8));
+    const Eyes eyes = eyes_at(pose, planet_->radius_m(), base_m);
+    pair.first(eyes.left);
+    const core::DrawResult right = pair.second(eyes.right);
+    const core::DrawResult full = rays_->draw(eyes.right);
+    ASSERT_TRUE(right.certificate.carried) << n;
+    const double bound_px = right.certificate.shift_bound_px + full.certificate.shift_bound_px;
+    const double stretch = core::corner_stretch(eyes.right.view);
+    ASSERT_EQ(right.frame.range_m.size(), full.frame.range_m.size());
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const auto at = static_cast<std::size_t>(y * kWidth + x);
+        const warp::Origin origin = pair.carried().origin[at];
+        if (origin != warp::Origin::kCarried && origin != warp::Origin::kBetween) continue;
+        const double off = off_px(eyes.right, base_m, right.frame, full.frame, x, y);
+        ASSERT_LE(off, bound_px * stretch + 1e-3) << "pair " << n << ", pixel " << x << ", " << y;
+        most_share = std::max(most_share, off / (bound_px * stretch + 1e-3));
+      }
+    }
+    carried += right.certificate.carried->carried_share + right.certificate.carried->between_share;
+  }
+  std::printf("carried %.3f, largest share of the bound %.3f\n", carried / 500, most_share);
+  EXPECT_GT(carried / 500, 0.5);
+}
+
+TEST_F(PairDrawerTest, TheFirstEyeIsThatOfTheRenderer) {
+  PairDrawer pair(*rays_, planet_, {.threads = 2});
+  for (const bool smooth : {true, false}) {
+    for (const bool want_range : {true, false}) {
+      core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).left;
+      request.settings.smooth_edges = smooth;
+      request.settings.gamma = 1.7;
+      request.want_range = want_range;
+      const core::DrawResult full = rays_->draw(request);
+      const core::DrawResult first = pair.first(request);
+      EXPECT_EQ(first.frame.colour, full.frame.colour);
+      EXPECT_EQ(first.frame.range_m, full.frame.range_m);
+      EXPECT_EQ(core::to_json(first.certificate), core::to_json(full.certificate));
+    }
+  }
+}
+
+TEST_F(PairDrawerTest, TheCertificateSaysWhatIsCarried) {
+  PairDrawer pair(*rays_, planet_, {.threads = 2});
+  const Eyes eyes = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500);
+  const core::Certificate first = pair.first(eyes.left).certificate;
+  EXPECT_FALSE(first.carried);
+  const core::Certificate second = pair.second(eyes.right).certificate;
+  ASSERT_TRUE(second.carried);
+  EXPECT_GT(second.carried->carried_share, 0.5);
+  EXPECT_GT(second.carried->drawn_share, 0);
+  EXPECT_NEAR(second.carried->carried_share + second.carried->between_share + second.carried->drawn_share, 1,
+              1e-12);
+  EXPECT_GE(second.shift_bound_px, first.shift_bound_px + second.carried->added_px);
+  EXPECT_LE(second.carried->added_px, 1 + 2 * warp::kCarriedPosition_px);
+  EXPECT_FALSE(second.image_bound_px);
+  const std::string json = core::to_json(second).dump();
+  for (const char* key : {"carrying_px", "carried_share", "between_share", "drawn_share"})
+    EXPECT_NE(json.find(key), std::string::npos) << key;
+  EXPECT_EQ(core::to_json(first).dump().find("carrying_px"), std::string::npos);
+}
+
+TEST_F(PairDrawerTest, ThreadsChangeNoBit) {
+  const Eyes eyes = eyes_at({10, 20, 15'000, 40, -12, 5}, planet_->radius_m(), 500);
+  std::vector<core::Frame> frames;
+  for (const int threads : {1, 3}) {
+    const auto rays = vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, threads});
+    PairDrawer pair(*rays, planet_, {.threads = threads});
+    pair.first(eyes.left);
+    frames.push_back(pair.second(eyes.right).frame);
+  }
+  EXPECT_EQ(frames[0].colour, frames[1].colour);
+  EXPECT_EQ(frames[0].range_m, frames[1].range_m);
+}
+
+TEST_F(PairDrawerTest, ACameraBelowTheGroundIsDrawnInFull) {
+  PairDrawer pair(*rays_, planet_, {.threads = 2});
+  const Eyes above = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500);
+  const Eyes below = eyes_at({10, 20, -15'000, 40, -12, 0}, planet_->radius_m(), 500);
+  const core::DrawResult full = rays_->draw(below.right);
+  ASSERT_TRUE(full.certificate.is_below_ground);
+  for (const core::DrawRequest& left : {above.left, below.left}) {
+    pair.first(left);
+    const core::DrawResult right = pair.second(below.right);
+    EXPECT_EQ(right.frame.colour, full.frame.colour);
+    EXPECT_TRUE(right.certificate.is_below_ground);
+    EXPECT_FALSE(right.certificate.carried);
+    EXPECT_TRUE(pair.carried().origin.empty());
+  }
+}
+
+TEST_F(PairDrawerTest, SaysWhatCannotBeCarried) {
+  PairDrawer pair(*rays_, planet_, {.threads = 1});
+  core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).right;
+  EXPECT_THROW((void)pair.second(request), std::logic_error);
+  EXPECT_EQ(vpe::app::why_not_carried(request), "");
+  request.settings.samples = 4;
+  EXPECT_NE(vpe::app::why_not_carried(request).find("samples"), std::string::npos);
+  request.settings.samples = 1;
+  request.settings.mode = core::Mode::kWireframe;
+  EXPECT_NE(vpe::app::why_not_carried(request), "");
+  request.settings.mode = core::Mode::kLit;
+  request.view.projection = core::Projection::kCylinder;
+  EXPECT_NE(vpe::app::why_not_carried(request).find("perspective"), std::string::npos);
+}
+
+}  // namespace
