@@ -218,7 +218,7 @@ std::string in_1_1(const std::string& lines) {
 
 TEST(Flight, ReadsViewsWithATime) {
   const ParsedFlight parsed =
-      parse_flight(in_1_1("at 1 view fov=30 backend=ray eyes=sbs base=2.5 size=640x360\n"
+      parse_flight(in_1_1("at 1 view fov=30 backend=ray eyes=sbs base=2.5 convergence=80 size=640x360\n"
                           "at 1 set mode=lit\n"
                           "at 2 view eyes=off\n"
                           "at 3 view backend=auto base=0\n"
@@ -227,15 +227,15 @@ TEST(Flight, ReadsViewsWithATime) {
   ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
   using vpe::core::DrawnBy;
   const std::vector<ViewCommand> wanted{
-      {1, {30, ImageSize{640, 360}, DrawnBy::kRay, Eyes{vpe::core::StereoLayout::kSideBySide}, 2.5}},
-      {2, {{}, {}, {}, Eyes{}, {}}},
-      {3, {{}, {}, DrawnBy::kAuto, {}, 0}},
-      {4, {{}, {}, DrawnBy::kRay, {}, {}}}};
+      {1, {30, ImageSize{640, 360}, DrawnBy::kRay, Eyes{vpe::core::StereoLayout::kSideBySide}, 2.5, 80}},
+      {2, {{}, {}, {}, Eyes{}, {}, {}}},
+      {3, {{}, {}, DrawnBy::kAuto, {}, 0, {}}},
+      {4, {{}, {}, DrawnBy::kRay, {}, {}, {}}}};
   EXPECT_EQ(parsed.flight->views, wanted);
   EXPECT_EQ(duration_s(*parsed.flight), 4);
   EXPECT_EQ(version_of(*parsed.flight), FlightVersion::k1_1);
   EXPECT_EQ(to_text(*parsed.flight).substr(0, 11), "flight 1.1\n");
-  EXPECT_EQ(to_line(wanted[0]), "at 1 view fov=30 size=640x360 backend=ray eyes=sbs base=2.5\n");
+  EXPECT_EQ(to_line(wanted[0]), "at 1 view fov=30 size=640x360 backend=ray eyes=sbs base=2.5 convergence=80\n");
 }
 
 // What does not use a newer version is written as it was before there was one.

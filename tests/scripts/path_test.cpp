@@ -361,16 +361,16 @@ Flight with_views(const std::string& views) {
 TEST(Path, ViewsHoldFromTheirTimeOn) {
   using vpe::core::DrawnBy;
   using vpe::core::StereoLayout;
-  const Path path(with_views("at 3 view backend=ray\nat 5 view eyes=ou base=4\nat 7 view eyes=off size=8x6\n"),
+  const Path path(with_views("at 3 view backend=ray\nat 5 view eyes=ou base=4 convergence=60\nat 7 view eyes=off size=8x6\n"),
                   mars::kMarsRadius_m, {});
   EXPECT_EQ(path.at(0).view, ViewState());
   EXPECT_EQ(path.at(std::nextafter(3, 0)).view, ViewState());
-  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}}));
-  EXPECT_EQ(path.at(5).view, (ViewState{{}, {}, DrawnBy::kRay, Eyes{StereoLayout::kOverUnder}, 4}));
-  const ViewState last{{}, ImageSize{8, 6}, DrawnBy::kRay, Eyes{}, 4};
+  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}, {}}));
+  EXPECT_EQ(path.at(5).view, (ViewState{{}, {}, DrawnBy::kRay, Eyes{StereoLayout::kOverUnder}, 4, 60}));
+  const ViewState last{{}, ImageSize{8, 6}, DrawnBy::kRay, Eyes{}, 4, 60};
   EXPECT_EQ(path.at(7).view, last);
   EXPECT_EQ(path.at(99).view, last);
-  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}}));  // also backwards
+  EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}, {}}));  // also backwards
 }
 
 TEST(Path, TheFieldOfViewZoomsEvenlyBetweenItsLinesAndIsHeldOutside) {

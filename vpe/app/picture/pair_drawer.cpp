@@ -1,6 +1,8 @@
 #include "vpe/app/picture/pair_drawer.h"
 
 #include <algorithm>
+#include <chrono>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 
 #include "paging/surface/distance.h"
@@ -104,10 +106,13 @@ core::DrawResult PairDrawer::first(const core::DrawRequest& request) {
 
 core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
   if (!has_first_) throw std::logic_error("PairDrawer: there is no first eye");
-  carried_ = {};
+  drawing_s_ = 0;
   const double ground_m =
       paging::distance_to_ground_m(surface_, request.view.camera.position_m, request.settings.exaggeration);
-  if (certificate_.is_below_ground || ground_m == 0) return renderer_.draw(request);
+  if (certificate_.is_below_ground || ground_m == 0) {
+    carried_ = {};
+    return renderer_.draw(request);
+  }
   warp::CarryOptions options;
   options.gap_px = options_.gap_px;
   options.filters = options_.filters;
@@ -118,11 +123,34 @@ core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
     return static_cast<std::uint8_t>(origin == warp::Origin::kOpen ? 1 : 0);
   });
   core::Frame frame{carried_.width, carried_.height, carried_.colour, carried_.range_m};
-  core::DrawResult result = rays_->draw_pixels(raw(request), {wanted_, carried_.range_m}, frame);
+  const std::vector<float> unknown_m(options_.uses_clear_air ? 0 : wanted_.size());
+  const auto begun = std::chrono::steady_clock::now();
+  core::DrawResult result = rays_->draw_pixels(
+      raw(request), {wanted_, options_.uses_clear_air ? std::span<const float>(carried_.range_m) : unknown_m}, frame);
+  drawing_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   state(carried_, certificate_, result.certificate);
   finish(request, frame);
   result.frame = std::move(frame);
   return result;
+}
+
+std::vector<base::Rgb> with_drawn_pixels_red(const warp::CarriedImage& carried, const core::Frame& frame) {
+  std::vector<base::Rgb> pixels = frame.colour;
+  for (std::size_t n = 0; n < carried.origin.size(); ++n)
+    if (carried.origin[n] == warp::Origin::kOpen) pixels[n] = {255, 0, 0};
+  return pixels;
+}
+
+std::vector<base::Rgb> colour_differences(const core::Frame& a, const core::Frame& b) {
+  constexpr double kWhite = 50;
+  std::vector<base::Rgb> pixels(a.colour.size());
+  for (std::size_t n = 0; n < pixels.size(); ++n) {
+    const glm::dvec3 apart(a.colour[n].r - b.colour[n].r, a.colour[n].g - b.colour[n].g,
+                           a.colour[n].b - b.colour[n].b);
+    const auto tone = static_cast<std::uint8_t>(255 * std::min(glm::length(apart) / kWhite, 1.0) + 0.5);
+    pixels[n] = {tone, tone, tone};
+  }
+  return pixels;
 }
 
 }  // namespace vpe::app

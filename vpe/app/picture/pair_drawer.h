@@ -19,7 +19,9 @@ namespace vpe::app {
 
 struct PairOptions {
   double gap_px = 2;  // CarryOptions::gap_px, > 0
-  bool filters = true;
+  bool filters = true;  // CarryOptions::filters
+  // False: nothing is known about the air before the ground of pixels that are drawn. For comparison.
+  bool uses_clear_air = true;
   // Bound of the memory beside the first eyes' renderer. Smaller: tiles are loaded again.
   std::size_t memory_bytes = std::size_t{256} << 20;
   int threads = 0;  // 0: all cores
@@ -45,6 +47,8 @@ class PairDrawer {
   // a first eye.
   core::DrawResult second(const core::DrawRequest& request);
 
+  // Returns what the drawn pixels of the last second eye took, seconds; 0 if all were drawn.
+  double drawing_s() const { return drawing_s_; }
   // Returns where each pixel of the last second eye comes from; without pixels if all were drawn.
   const warp::CarriedImage& carried() const { return carried_; }
 
@@ -62,10 +66,17 @@ class PairDrawer {
   core::Frame raw_;  // its image before edges are smoothed
   core::Certificate certificate_;
   bool has_first_ = false;
+  double drawing_s_ = 0;
   warp::Carrier carrier_;
   warp::CarriedImage carried_;
   std::vector<std::uint8_t> wanted_;
   std::vector<float> inverse_depth_;
 };
+
+// Returns an image with the pixels in red that were drawn (Wan 2000, Fig. 8c).
+std::vector<base::Rgb> with_drawn_pixels_red(const warp::CarriedImage& carried, const core::Frame& frame);
+
+// Returns distances of colours between two images of equal size as shades of grey; 50 steps and more are white (Fig. 8e).
+std::vector<base::Rgb> colour_differences(const core::Frame& a, const core::Frame& b);
 
 }  // namespace vpe::app

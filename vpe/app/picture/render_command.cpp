@@ -235,26 +235,15 @@ std::unique_ptr<PairDrawer> pair_drawer(const RenderArguments& arguments, const 
                                                   .threads = common.threads});
 }
 
-// Writes the second eye with drawn pixels in red, and how far it is from the image that is drawn in full: 50 steps of
-// colour and more are white (Wan 2000, Fig. 8).
+// Writes the maps of a carried eye that were asked for.
 void write_maps(const StereoArguments& stereo, const warp::CarriedImage& carried, const core::Frame& right,
                 const core::DrawRequest& request, core::Renderer& renderer) {
-  constexpr double kWhite = 50;
-  std::vector<base::Rgb> pixels = right.colour;
-  if (!stereo.map.empty()) {
-    for (std::size_t n = 0; n < pixels.size(); ++n)
-      if (carried.origin[n] == warp::Origin::kOpen) pixels[n] = {255, 0, 0};
-    core::write_image(stereo.map, pixels, right.width, right.height);
-  }
-  if (stereo.differences.empty()) return;
-  const core::Frame full = renderer.draw(request).frame;
-  for (std::size_t n = 0; n < pixels.size(); ++n) {
-    const glm::dvec3 apart(right.colour[n].r - full.colour[n].r, right.colour[n].g - full.colour[n].g,
-                           right.colour[n].b - full.colour[n].b);
-    const auto tone = static_cast<std::uint8_t>(255 * std::min(glm::length(apart) / kWhite, 1.0) + 0.5);
-    pixels[n] = {tone, tone, tone};
-  }
-  core::write_image(stereo.differences, pixels, right.width, right.height);
+  const auto write = [&](const std::string& file, const std::vector<base::Rgb>& pixels) {
+    core::write_image(file, pixels, right.width, right.height);
+  };
+  if (!stereo.map.empty()) write(stereo.map, with_drawn_pixels_red(carried, right));
+  if (!stereo.differences.empty())
+    write(stereo.differences, colour_differences(right, renderer.draw(request).frame));
 }
 
 void render(RenderArguments& arguments, const Common& common) {

@@ -30,6 +30,7 @@ void report_all(const ReportRequest& request, const Common& common) {
   append(page, error_time_report(request, common));
   append(page, scaling_report(request, common));
   append(page, features_report(request, common));
+  append(page, papers_report(request, common));
   base::write_file(request.folder / "report.html", report::to_html(page));
   if (!common.quiet) std::printf("%s\n", (request.folder / "report.html").c_str());
 }
@@ -40,7 +41,7 @@ void add_report_all(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ReportRequest>();
   CLI::App* command =
       add_command(report, "all",
-                  "Make the reports error-time, scaling and features with their defaults, and one page of all",
+                  "Make the reports error-time, scaling, features and papers with their defaults, and one page of all",
                   common, false);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("-o,--output", arguments->folder, "Folder for report.html and the files of each report")

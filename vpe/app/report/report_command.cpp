@@ -18,6 +18,7 @@ void add_report(CLI::App& program, Common& common) {
   add_report_error_time(*report, common);
   add_report_scaling(*report, common);
   add_report_features(*report, common);
+  add_report_papers(*report, common);
   add_report_all(*report, common);
 }
 

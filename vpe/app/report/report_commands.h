@@ -13,6 +13,7 @@ namespace vpe::app {
 void add_report_error_time(CLI::App& report, Common& common);
 void add_report_scaling(CLI::App& report, Common& common);
 void add_report_features(CLI::App& report, Common& common);
+void add_report_papers(CLI::App& report, Common& common);
 
 struct ReportRequest {
   std::filesystem::path folder;
@@ -25,6 +26,7 @@ struct ReportRequest {
 report::Page error_time_report(const ReportRequest& request, const Common& common);
 report::Page scaling_report(const ReportRequest& request, const Common& common);
 report::Page features_report(const ReportRequest& request, const Common& common);
+report::Page papers_report(const ReportRequest& request, const Common& common);
 
 // Adds the command that makes all reports in one folder, and one page of all.
 void add_report_all(CLI::App& report, Common& common);
