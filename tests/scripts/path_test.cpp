@@ -361,8 +361,10 @@ Flight with_views(const std::string& views) {
 TEST(Path, ViewsHoldFromTheirTimeOn) {
   using vpe::core::DrawnBy;
   using vpe::core::StereoLayout;
-  const Path path(with_views("at 3 view backend=ray\nat 5 view eyes=ou base=4 convergence=60\nat 7 view eyes=off size=8x6\n"),
-                  mars::kMarsRadius_m, {});
+  const Path path(
+      with_views(
+          "at 3 view backend=ray\nat 5 view eyes=ou base=4 convergence=60\nat 7 view eyes=off size=8x6\n"),
+      mars::kMarsRadius_m, {});
   EXPECT_EQ(path.at(0).view, ViewState());
   EXPECT_EQ(path.at(std::nextafter(3, 0)).view, ViewState());
   EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}, {}}));

@@ -1,6 +1,7 @@
 // Fixture for tests of the explore window with a small planet.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -37,15 +38,17 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     setup.as_drawn = app::as_drawn;
     app::Common common;
     common.memory_mb = 256;
-    setup.make_painter = [common, file = painted_ ? painted_ : planet_] {
-      return std::make_unique<app::WindowPainter>(file, common);
+    setup.make_painter = [common, file = painted_ ? painted_ : planet_, wrap = wrap_painter_] {
+      std::unique_ptr<Painter> painter = std::make_unique<app::WindowPainter>(file, common);
+      return wrap ? wrap(std::move(painter)) : std::move(painter);
     };
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
     opening_message_ = window_->state().message;
     focus();
   }
 
-  ExploreSetup extra_;           // options of a test
+  ExploreSetup extra_;                                                              // options of a test
+  std::function<std::unique_ptr<Painter>(std::unique_ptr<Painter>)> wrap_painter_;  // may be empty
   std::string opening_message_;  // of the window that was opened last; messages go away after a while
   std::shared_ptr<const paging::PlanetFile> planet_ = planet();
   std::shared_ptr<const paging::PlanetFile> painted_;  // the same planet with other storage, or null

@@ -6,6 +6,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/voxel/ray_renderer.h"
+#include "vpe/window/moved_image.h"
 
 namespace vpe::app {
 
@@ -110,6 +111,8 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   drawn.result = draw_one(draw_request);
   drawn.result.settled = drawn.result.settled && !has_other_palette;
   core::Frame& frame = drawn.result.frame;
+  if (request.draw.want_rough_range && !frame.range_m.empty() && !drawn.result.certificate.is_below_ground)
+    drawn.grid.emplace(draw_request.view, frame.range_m, window::kMovedCells);
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};
   return drawn;

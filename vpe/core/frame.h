@@ -94,6 +94,10 @@ struct DrawRequest {
   SettingsValues settings;
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
   bool want_range = false;  // also returns Frame::range_m
+  // Also returns Frame::range_m where the backend has it at hand anyway, within a thousandth of what the image shows: by
+  // rays always; by triangles for colours with one sample a pixel that are no lines. Else it stays empty. For images that
+  // are moved to another camera (vpe/warp); no certificate uses it.
+  bool want_rough_range = false;
   // False: Frame::colour stays empty, and nothing is loaded for it; the certificate does not know the share of
   // nodata. For ranges at another accuracy than that of the image.
   bool want_colour = true;

@@ -76,6 +76,7 @@ class PolygonRenderer : public core::Renderer {
   std::optional<double> draw_image(const core::DrawRequest& request, const ClipProjection& clip,
                                    core::DrawResult& result);
   void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
+  static void ranges_of(const core::View& view, const ClipProjection& clip, std::span<float> depths);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
   core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip,
@@ -97,6 +98,7 @@ class PolygonRenderer : public core::Renderer {
   std::vector<TileDraw> draws_;
   std::vector<CertifiedTile> certified_;
   std::vector<float> depth_;
+  bool has_rough_range_ = false;  // depth_ holds ranges of the image
   std::vector<base::Rgb> colours_;
   std::vector<std::uint32_t> tile_ids_;  // packed, of the range image's pixels (tile_id.h)
 };
@@ -300,12 +302,17 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjectio
   tile_ids_.resize(colours_.size());
   std::transform(colours_.begin(), colours_.end(), tile_ids_.begin(),
                  [](const base::Rgb& c) { return id_of_colour(c.r, c.g, c.b); });
-  const core::View& view = request.view;
+  ranges_of(request.view, clip, frame.range_m);
+}
+
+// Replaces values of the depth buffer by ranges.
+void PolygonRenderer::ranges_of(const core::View& view, const ClipProjection& clip, std::span<float> depths) {
+  const glm::ivec2 size = core::drawn_size(view);
   const double f = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x - view.part.x;
   const double cy = 0.5 * view.height + view.principal_offset_px.y - view.part.y;
   for (int y = 0; y < size.y; ++y) {
-    float* row = &frame.range_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x)];
+    float* row = &depths[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x)];
     const double b = (y + 0.5 - cy) / f;
     for (int x = 0; x < size.x; ++x) {
       const double a = (x + 0.5 - cx) / f;
@@ -333,11 +340,14 @@ std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& reque
   const std::optional<double> nodata = nodata_share(settings.mode, image);
   const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
   const bool smooth = settings.samples == 1 && settings.smooth_edges && !lines;
-  if (smooth) image.read_depth(depth_);
+  const bool ranges = settings.samples == 1 && request.want_rough_range && !request.want_range && !lines;
+  if (smooth || ranges) image.read_depth(depth_);
   result.stats.read_ms = ms_since(start);
   start = Clock::now();
   if (smooth) core::smooth_edges(result.frame.colour, depth_, size.x, size.y, pool_);
   core::apply_gamma(result.frame.colour, settings.gamma);
+  if (ranges) ranges_of(request.view, clip, depth_);
+  has_rough_range_ = ranges;
   result.stats.draw_ms += ms_since(start);
   return nodata;
 }
@@ -366,6 +376,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   result.frame.height = size.y;
   set_material(request);
   std::optional<double> nodata;
+  has_rough_range_ = false;
   if (request.want_colour) nodata = draw_image(request, clip, result);
   const auto start = Clock::now();
   if (request.want_range) read_range(request, clip, result.frame);
@@ -374,6 +385,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   // The programs of images are kept while ranges are drawn between them.
   if (request.want_colour) tiles_.drop_unused();
   result.certificate = certify(request, clip, result.frame);
+  if (has_rough_range_) result.frame.range_m.swap(depth_);
   result.certificate.nodata_share = nodata;
   result.certificate.tiles_missing = result.stats.tiles_missing;
   result.certificate.tiles_substituted = result.stats.tiles_substituted;

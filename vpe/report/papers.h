@@ -21,11 +21,11 @@ inline constexpr std::array<PublishedPair, 5> kWan2000Textured{
 
 // Section 4 and Fig. 8 of the same paper.
 struct PublishedReprojection {
-  double cast_to_carried = 0.043;     // pixels
-  double difference = 0.031;          // mean distance of colours to the image cast in full, of the largest one
+  double cast_to_carried = 0.043;  // pixels
+  double difference = 0.031;       // mean distance of colours to the image cast in full, of the largest one
   double unfiltered_difference = 0.057;  // the same without the A-buffer
-  double casting_share = 0.25;        // of the right image's time
-  double incoherent_casting = 4;      // time of casting without coherent starts, over that with them
+  double casting_share = 0.25;           // of the right image's time
+  double incoherent_casting = 4;         // time of casting without coherent starts, over that with them
 };
 inline constexpr PublishedReprojection kWan2000Figure8;
 

@@ -265,7 +265,8 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
     image.middle->add(usage, planet_->tree());
     image.usage.add(usage, planet_->tree());
   }
-  if (request.want_range || colour.empty()) spread_ranges(plan, request.view, outer_m, pool_, range_m);
+  if (request.want_range || request.want_rough_range || colour.empty())
+    spread_ranges(plan, request.view, outer_m, pool_, range_m);
   if (colour.empty()) return;
   std::vector<base::Rgb>& outer_colour = fovea_.outer;
   outer_colour.resize(outer_m.size());
@@ -485,7 +486,7 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (explained_ != nullptr) *explained_ = explain_tiles(request, planet_->tree(), image.usage);
   result.stats.tiles_by_level = image.usage.tiles_by_level;
   result.stats.tiles_drawn = result.certificate.tiles_drawn;
-  if (!request.want_range) range_m_.swap(frame.range_m);
+  if (!request.want_range && !request.want_rough_range) range_m_.swap(frame.range_m);
   // The buffers of a poster are too large to keep.
   if (pixels > kMostKeptPixels) {
     range_m_ = {};

@@ -41,6 +41,7 @@ void ExploreWindow::request_image() {
   request.draw.coarsening = next->multiplier;
   request.draw.keeps_levels = true;
   request.draw.paging.wait = false;
+  request.draw.want_rough_range = setup_.preferences.warp != explore::Warp::kOff && !chosen.stereo;
   request.draw.paging.upcoming = foreseen_views(next->view);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
@@ -166,6 +167,18 @@ void ExploreWindow::find_cursor() {
     under_cursor_ = session_.place_at(eye_image(layout.eye_at(cursor_)).view, *xy);
 }
 
+// Returns true if the image is to follow the camera, which has moved since: what lies over the image at fixed places would
+// move with it.
+bool ExploreWindow::lags() const {
+  if (!drawn_ || !drawn_->grid || setup_.preferences.warp == explore::Warp::kOff || chooser_.choice().stereo ||
+      guide_.inside() != nullptr || state_.large_map || !state_.image_error.empty())
+    return false;
+  const core::Overlays& o = session_.settings().values();
+  const bool has_fixed = o.legend || o.scale_bar || o.north_arrow || o.time_code || !o.title.empty() ||
+                         o.compass != core::CompassStrip::kOff;
+  return !has_fixed && !is_same_sight(drawn_->request.draw.view, session_.view());
+}
+
 void ExploreWindow::draw_view() {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   if (!state_.image_error.empty()) {
@@ -176,7 +189,16 @@ void ExploreWindow::draw_view() {
   if (!drawn_) return;
   const ViewArea area =
       drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
-  list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
+  if (lags()) {
+    moved_image_.draw(list, view_texture_.id(), area, *drawn_->grid, session_.view(), setup_.preferences.warp);
+  } else {
+    list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
+  }
+  shown_view_ = session_.view();
+  // Images of the terrain come first: few frames are shown between quick ones.
+  constexpr double kQuickest_s = 1.0 / 60;
+  constexpr double kSlowest_s = 1.0 / 40;
+  next_moved_s_ = now_s() + std::clamp(drawn_->seconds / 3, kQuickest_s, kSlowest_s);
   for (int n = 0; n < image_layout().eyes(); ++n) {
     const EyeImage eye = eye_image(n);
     const ViewArea clip = image_layout().eye_area(n);

@@ -120,7 +120,10 @@ double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
   const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
   if (guide_.inside() != nullptr) return !guide_.inside()->is_at_rest() || frames_due_ > 0 ? pause_s : rest_s;
   if (frames_due_ > 0) return std::max(pause_s, next_frame_s_ - now_s());
-  if (!maker_->is_idle()) return std::min(rest_s, kImageWait_s);
+  if (!maker_->is_idle()) {
+    const bool follows = lags() || (moves && drawn_ && drawn_->grid);
+    return follows ? std::max(pause_s, next_moved_s_ - now_s()) : std::min(rest_s, kImageWait_s);
+  }
   return moves || live_.state() != lod::RefinementState::kWaiting ? pause_s : rest_s;
 }
 
@@ -192,9 +195,11 @@ bool ExploreWindow::step(double wait_s) {
   request_image();
   if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (shown_devices_ && shown_devices_ != devices_.states(now_s())) frames_due_ = std::max(frames_due_, 1);
-  if (is_new || (frames_due_ > 0 && now_s() >= next_frame_s_)) {
+  const bool moves_image =
+      lags() && now_s() >= next_moved_s_ && (!shown_view_ || !is_same_sight(*shown_view_, session_.view()));
+  if (is_new || moves_image || (frames_due_ > 0 && now_s() >= next_frame_s_)) {
     draw_frame();
-    --frames_due_;
+    frames_due_ = std::max(frames_due_ - 1, 0);
     next_frame_s_ = frames_due_ > 0 ? 0 : now_s() + kHoverFrame_s;
   }
   return !display_.should_close();

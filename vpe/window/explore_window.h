@@ -29,6 +29,7 @@
 #include "vpe/window/explore_layout.h"
 #include "vpe/window/hotspot_guide.h"
 #include "vpe/window/image_layout.h"
+#include "vpe/window/moved_image.h"
 #include "vpe/window/panels/appearance_panel.h"
 #include "vpe/window/panels/drawing_panel.h"
 #include "vpe/window/panels/file_panel.h"
@@ -247,6 +248,7 @@ class ExploreWindow {
   void draw_map(MapPanel& map, int width, int height);
   void fly_to(const core::Place& place);
   QualityText quality_of_image() const;
+  bool lags() const;
   std::string copy_view();
   std::optional<mars::LonLat> pointed_place() const;
   bool handle_panel_keys(const Event& event);
@@ -321,6 +323,9 @@ class ExploreWindow {
   std::optional<mars::LonLat> under_cursor_;  // in view or map
   std::string cursor_text_;                   // of the place that was under it last
   Texture view_texture_;
+  MovedImage moved_image_;
+  std::optional<core::View> shown_view_;  // that the last frame showed
+  double next_moved_s_ = 0;               // not before, while the image follows the camera
   explore::LiveImage live_;
   std::optional<DrawnImage> drawn_;
   std::uint64_t requested_ = 0;      // number of the last image request

@@ -126,7 +126,8 @@ core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
   const std::vector<float> unknown_m(options_.uses_clear_air ? 0 : wanted_.size());
   const auto begun = std::chrono::steady_clock::now();
   core::DrawResult result = rays_->draw_pixels(
-      raw(request), {wanted_, options_.uses_clear_air ? std::span<const float>(carried_.range_m) : unknown_m}, frame);
+      raw(request), {wanted_, options_.uses_clear_air ? std::span<const float>(carried_.range_m) : unknown_m},
+      frame);
   drawing_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   state(carried_, certificate_, result.certificate);
   finish(request, frame);

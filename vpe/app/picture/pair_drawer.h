@@ -18,7 +18,7 @@
 namespace vpe::app {
 
 struct PairOptions {
-  double gap_px = 2;  // CarryOptions::gap_px, > 0
+  double gap_px = 2;    // CarryOptions::gap_px, > 0
   bool filters = true;  // CarryOptions::filters
   // False: nothing is known about the air before the ground of pixels that are drawn. For comparison.
   bool uses_clear_air = true;

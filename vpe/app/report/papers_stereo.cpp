@@ -51,10 +51,10 @@ Eyes eyes_of(const StereoPaperPlan& plan, const Look& look, double base_m) {
 struct PairTimes {
   double left_s = 0;
   double right_s = 0;
-  double full_s = 0;            // of the right eye
-  double right_to_left = 0;     // medians of ratios within a round
+  double full_s = 0;         // of the right eye
+  double right_to_left = 0;  // medians of ratios within a round
   double right_to_full = 0;
-  double casting_s = 0;         // of the right eye's pixels
+  double casting_s = 0;  // of the right eye's pixels
 };
 
 PairTimes time_pair(PairDrawer& pair, core::Renderer& renderer, const Eyes& eyes, int rounds) {
@@ -111,8 +111,8 @@ Figure8 draw_figure(const StereoPaperPlan& plan, const std::shared_ptr<const pag
   write("e-differences", colour_differences(right, full), right);
   Figure8 figure;
   const auto count = [&](warp::Origin origin) { return static_cast<double>(pair.carried().count(origin)); };
-  figure.cast_to_carried = count(warp::Origin::kOpen) /
-                           std::max(count(warp::Origin::kCarried) + count(warp::Origin::kBetween), 1.0);
+  figure.cast_to_carried =
+      count(warp::Origin::kOpen) / std::max(count(warp::Origin::kCarried) + count(warp::Origin::kBetween), 1.0);
   figure.difference = mean_difference(right, full);
 
   options.filters = false;
@@ -202,8 +202,8 @@ report::Table figure_table(const std::array<Figure8, 2>& figures, const std::arr
   add("without : with filter", p.unfiltered_difference / p.difference, a.unfiltered_difference / a.difference,
       b.unfiltered_difference / b.difference);
   add("share of casting in the right image's time", p.casting_share, casting_share[0], casting_share[1]);
-  add("casting from the eye : from where the air is known to be clear", p.incoherent_casting, a.incoherent_casting,
-      b.incoherent_casting);
+  add("casting from the eye : from where the air is known to be clear", p.incoherent_casting,
+      a.incoherent_casting, b.incoherent_casting);
   return table;
 }
 
@@ -225,7 +225,8 @@ int count_steps(const StereoPaperPlan& plan) {
   return static_cast<int>(kLooks.size() * (plan.threads.size() + 1));
 }
 
-StereoPaper measure_stereo_paper(const StereoPaperPlan& plan, const std::shared_ptr<const paging::PlanetFile>& planet,
+StereoPaper measure_stereo_paper(const StereoPaperPlan& plan,
+                                 const std::shared_ptr<const paging::PlanetFile>& planet,
                                  const std::filesystem::path& folder, const std::function<void()>& step) {
   StereoPaper paper;
   std::array<Figure8, 2> figures;

@@ -14,11 +14,11 @@
 namespace vpe::app {
 
 struct StereoPaperPlan {
-  core::View view;         // of the middle between both eyes
-  glm::dvec3 sun{};        // core::DrawRequest::sun
-  double eye_base_m = 0;   // 0: a thirtieth of the distance to the nearest ground of the view
+  core::View view;        // of the middle between both eyes
+  glm::dvec3 sun{};       // core::DrawRequest::sun
+  double eye_base_m = 0;  // 0: a thirtieth of the distance to the nearest ground of the view
   std::vector<int> threads;
-  int rounds = 5;          // of each time. Larger: steadier medians
+  int rounds = 5;  // of each time. Larger: steadier medians
   std::size_t memory_bytes = std::size_t{1} << 30;
 };
 
@@ -30,7 +30,8 @@ struct StereoPaper {
 
 // Measures by rays: the left eye in full, and the right eye carried and in full, with light and shadows, and with imagery.
 // Writes the six images of Fig. 8 of both into `folder`. Calls `step` before each part. Throws what renderers throw.
-StereoPaper measure_stereo_paper(const StereoPaperPlan& plan, const std::shared_ptr<const paging::PlanetFile>& planet,
+StereoPaper measure_stereo_paper(const StereoPaperPlan& plan,
+                                 const std::shared_ptr<const paging::PlanetFile>& planet,
                                  const std::filesystem::path& folder, const std::function<void()>& step);
 
 // Returns how often measure_stereo_paper() calls `step`.

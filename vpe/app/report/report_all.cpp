@@ -39,10 +39,10 @@ void report_all(const ReportRequest& request, const Common& common) {
 
 void add_report_all(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ReportRequest>();
-  CLI::App* command =
-      add_command(report, "all",
-                  "Make the reports error-time, scaling, features and papers with their defaults, and one page of all",
-                  common, false);
+  CLI::App* command = add_command(
+      report, "all",
+      "Make the reports error-time, scaling, features and papers with their defaults, and one page of all",
+      common, false);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("-o,--output", arguments->folder, "Folder for report.html and the files of each report")
       ->required();

@@ -71,15 +71,12 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   report::Page page;
   page.title = "Figures of the papers, published and here";
   page.paragraphs = report::to_paragraphs(facts);
-  page.paragraphs.push_back("Planet " + planet->path() + ", pose " + arguments.pose + ", " +
-                            arguments.size + " pixels.");
+  page.paragraphs.push_back("Planet " + planet->path() + ", pose " + arguments.pose + ", " + arguments.size +
+                            " pixels.");
   page.sections.push_back(stereo.section);
-  nlohmann::json json{{"run", report::to_json(facts)},
-                      {"load_after", report::load_now()},
-                      {"planet", planet->path()},
-                      {"pose", arguments.pose},
-                      {"size", arguments.size},
-                      {"eye_base_m", stereo.eye_base_m}};
+  nlohmann::json json{{"run", report::to_json(facts)}, {"load_after", report::load_now()},
+                      {"planet", planet->path()},      {"pose", arguments.pose},
+                      {"size", arguments.size},        {"eye_base_m", stereo.eye_base_m}};
   for (const report::Table& table : stereo.tables) json[table.name] = report::to_json(table);
   write_report(folder, "papers", page, json, stereo.tables);
   if (common.json) {
@@ -102,25 +99,32 @@ report::Page papers_report(const ReportRequest& request, const Common& common) {
 
 void add_report_papers(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<PapersArguments>();
-  CLI::App* command = add_command(report, "papers",
-                                  "Measure what the papers that vpe follows have published, and put both side by side; so "
-                                  "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection",
-                                  common, true);
+  CLI::App* command =
+      add_command(report, "papers",
+                  "Measure what the papers that vpe follows have published, and put both side by side; so "
+                  "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection",
+                  common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("-o,--output", arguments->folder, "Folder for papers.html, papers.json, CSV files and images")
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder for papers.html, papers.json, CSV files and images")
       ->required();
-  command->add_option("--pose", arguments->pose, "LON,LAT,ALT,YAW,PITCH,ROLL of the camera, degrees; ALT is not used")
+  command
+      ->add_option("--pose", arguments->pose,
+                   "LON,LAT,ALT,YAW,PITCH,ROLL of the camera, degrees; ALT is not used")
       ->capture_default_str();
   command->add_option("--height", arguments->height_m, "Height of the camera above the terrain, metres")
       ->check(number_within(0.1, 1e9))
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's image, pixels")->capture_default_str();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's image, pixels")
+      ->capture_default_str();
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   command
-      ->add_option("--eye-base", arguments->eye_base_m,
-                   "Distance between the eyes, metres (default: a thirtieth of the distance to the nearest terrain)")
+      ->add_option(
+          "--eye-base", arguments->eye_base_m,
+          "Distance between the eyes, metres (default: a thirtieth of the distance to the nearest terrain)")
       ->check(number_within(1e-6, 1e7));
   command->add_option("--rounds", arguments->rounds, "Number of times that each image is timed")
       ->check(CLI::Range(1, 1000))

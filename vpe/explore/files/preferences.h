@@ -25,6 +25,11 @@
 
 namespace vpe::explore {
 
+enum class Warp {
+  kOff,         // not at all: it stands still
+  kPolynomial,  // by two polynomials for the whole image (warp::fit_motion)
+  kGrid,        // as a grid whose vertices have ranges of their own (warp::ImageGrid)
+};
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 
 // Choices of the user. preferences.cpp declares the key, the limits and the meaning of each.
@@ -37,6 +42,8 @@ struct Preferences {
   double turn_speed = 1;        // factor on the speed of turning, for keys, gamepad and space mouse
   // lod.frame_ms while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
   double draw_budget_ms = 40;
+  // How the last image is moved to the newest pose until the next one is there.
+  Warp warp = Warp::kGrid;
   double ui_scale = 0;                                 // size of letters and panels; 0: the display's own scale
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;

@@ -12,6 +12,7 @@
 #include "vpe/core/frame.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
+#include "vpe/warp/image_grid.h"
 
 namespace vpe::window {
 
@@ -36,6 +37,8 @@ struct DrawnImage {
   // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
   // larger bound.
   core::DrawResult result;
+  // The image as a grid that follows the camera; absent unless the request wants rough ranges and there are some.
+  std::optional<warp::ImageGrid> grid;
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
   std::string error;  // empty if the image was drawn

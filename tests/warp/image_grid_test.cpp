@@ -1,0 +1,171 @@
+// Tests images that follow the camera as a grid, or by polynomials.
+#include "vpe/warp/image_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <random>
+#include <stdexcept>
+
+#include "tests/warp/scenes.h"
+
+namespace vpe::warp {
+namespace {
+
+using test_support::image_of;
+using test_support::Scene;
+using test_support::view_at;
+
+constexpr unsigned kSeed = 20261125;
+
+double random_in(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Scene ground() {
+  Scene scene;
+  scene.floors.push_back({{0, 0, 1}, 0});
+  for (int n = 0; n < 12; ++n)
+    scene.spheres.push_back({{-220.0 + 40 * n, 150.0 + 37 * (n % 5), -12}, 24.0 + 3 * (n % 4)});
+  return scene;
+}
+
+// Returns where the new camera sees what a place of an image shows, by the whole chain of rays and points.
+glm::dvec2 seen_at(const core::View& from, const core::View& to, const glm::dvec2& place_px, double depth_m) {
+  const glm::dvec3 ray = core::pixel_ray(from, place_px.x, place_px.y);
+  const double range_m = std::isinf(depth_m) ? 1e15 : depth_m / glm::dot(ray, from.camera.axes.forward);
+  return core::project(to, from.camera.position_m + range_m * ray).xy;
+}
+
+TEST(ImageGrid, VerticesMoveToWhereTheNewCameraSeesThem) {
+  std::mt19937 random(kSeed);
+  const core::View from = view_at({3, 0, 22}, 4, -8, 3);
+  const core::Frame frame = image_of(ground(), from);
+  const ImageGrid grid(from, frame.range_m, {16, 12});
+  EXPECT_EQ(grid.cells(), glm::ivec2(18, 14));
+  ASSERT_EQ(grid.places().size(), 19U * 15U);
+  std::vector<MovedVertex> moved;
+  for (int n = 0; n < 200; ++n) {
+    core::View to =
+        view_at({3 + random_in(random, -3, 3), random_in(random, -3, 3), 22 + random_in(random, -2, 2)},
+                4 + random_in(random, -9, 9), -8 + random_in(random, -9, 9), random_in(random, -20, 20));
+    to.fov_deg = random_in(random, 40, 80);
+    to.width = 320;
+    to.height = 200;
+    grid.move(to, moved);
+    for (int row = 1; row <= 13; ++row) {
+      for (int column = 1; column <= 17; ++column) {
+        const auto v = static_cast<std::size_t>(grid.index(column, row));
+        const glm::vec2 place = grid.places()[v];
+        const int x = std::min(static_cast<int>(place.x), 159);
+        const int y = std::min(static_cast<int>(place.y), 119);
+        const glm::dvec3 pixel_ray = core::pixel_ray(from, x + 0.5, y + 0.5);
+        const double depth_m = static_cast<double>(frame.range_m[static_cast<std::size_t>(160 * y + x)]) *
+                               glm::dot(pixel_ray, from.camera.axes.forward);
+        ASSERT_TRUE(moved[v].is_ahead);
+        const glm::dvec2 wanted = seen_at(from, to, place, depth_m);
+        ASSERT_NEAR(static_cast<double>(moved[v].xy_px.x), wanted.x, 2e-3) << n;
+        ASSERT_NEAR(static_cast<double>(moved[v].xy_px.y), wanted.y, 2e-3) << n;
+      }
+    }
+  }
+}
+
+TEST(ImageGrid, TheSameViewLeavesEachVertexInItsPlace) {
+  const core::View view = view_at({0, 0, 20}, 30, -20, 12);
+  const ImageGrid grid(view, image_of(ground(), view).range_m, {8, 6});
+  std::vector<MovedVertex> moved;
+  grid.move(view, moved);
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    EXPECT_NEAR(moved[n].xy_px.x, grid.places()[n].x, 1e-3);
+    EXPECT_NEAR(moved[n].xy_px.y, grid.places()[n].y, 1e-3);
+  }
+  EXPECT_EQ(grid.texture_at(0), glm::vec2(0, 0));
+  EXPECT_EQ(grid.texture_at(moved.size() - 1), glm::vec2(1, 1));
+  const auto middle = static_cast<std::size_t>(grid.index(5, 4));
+  EXPECT_EQ(grid.texture_at(middle), glm::vec2(0.5F, 0.5F));
+}
+
+// The motion of a pure rotation is a homography: the places that the exact projection gives, whatever the ranges.
+TEST(ImageGrid, APolynomialOfARotationIsWithinItsResidualOfTheHomography) {
+  std::mt19937 random(kSeed);
+  const core::View from = view_at({3, 0, 22}, 4, -8);
+  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  std::vector<MovedVertex> moved;
+  double worst_px = 0;
+  for (int n = 0; n < 200; ++n) {
+    core::View to = view_at({3, 0, 22}, 4 + random_in(random, -6, 6), -8 + random_in(random, -6, 6),
+                            random_in(random, -10, 10));
+    grid.move(to, moved);
+    const auto motion = fit_motion(grid, moved);
+    ASSERT_TRUE(motion);
+    for (double y = 0; y <= 120; y += 4) {
+      for (double x = 0; x <= 160; x += 4) {
+        const glm::dvec2 wanted = seen_at(from, to, {x, y}, std::numeric_limits<double>::infinity());
+        ASSERT_LE(glm::length(motion->at({x, y}) - wanted), motion->residual_px + 0.02) << n;
+      }
+    }
+    worst_px = std::max(worst_px, motion->residual_px);
+  }
+  std::printf("largest residual of a rotation of up to 6 degrees: %.3f px of 160\n", worst_px);
+  EXPECT_LT(worst_px, 2);
+  EXPECT_GT(worst_px, 0);
+}
+
+// On a plane the true motion is a homography too, so the grid is exact at its vertices, and polynomials nearly so.
+TEST(ImageGrid, TheGridFollowsReliefThatPolynomialsCannot) {
+  const core::View from = view_at({3, 0, 22}, 4, -20);
+  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  std::vector<MovedVertex> moved;
+  core::View to = view_at({6, 4, 22}, 4, -20);
+  grid.move(to, moved);
+  const auto motion = fit_motion(grid, moved);
+  ASSERT_TRUE(motion);
+  EXPECT_GT(motion->residual_px, 0.5);
+}
+
+TEST(ImageGrid, NearerCellsComeLast) {
+  const core::View from = view_at({3, 0, 22}, 4, -20);
+  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  std::vector<MovedVertex> moved;
+  grid.move(view_at({6, 4, 22}, 4, -20), moved);
+  const std::vector<glm::ivec2> order = far_to_near(grid, moved);
+  EXPECT_EQ(order.size(), 18U * 14U);
+  float before = 0;
+  for (const glm::ivec2& cell : order) {
+    float nearest = 0;
+    for (const auto& [right, down] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+      nearest = std::max(
+          nearest, moved[static_cast<std::size_t>(grid.index(cell.x + right, cell.y + down))].inverse_depth);
+    EXPECT_GE(nearest, before);
+    before = nearest;
+  }
+  // Behind the new camera there is nothing to draw.
+  grid.move(view_at({3, 0, 22}, 184, 20), moved);
+  EXPECT_TRUE(far_to_near(grid, moved).empty());
+  EXPECT_FALSE(fit_motion(grid, moved));
+}
+
+TEST(ImageGrid, BadInputIsRefused) {
+  core::View view = view_at({0, 0, 20});
+  const core::Frame frame = image_of(ground(), view);
+  EXPECT_THROW(ImageGrid(view, frame.range_m, {0, 4}), std::invalid_argument);
+  EXPECT_THROW(ImageGrid(view, {}, {4, 4}), std::invalid_argument);
+  const ImageGrid odd(view, frame.range_m, {3, 4});
+  std::vector<MovedVertex> moved;
+  odd.move(view, moved);
+  EXPECT_THROW((void)fit_motion(odd, moved), std::invalid_argument);
+  view.projection = core::Projection::kCylinder;
+  EXPECT_THROW(ImageGrid(view, frame.range_m, {4, 4}), std::invalid_argument);
+  // Ranges that are none count as sky.
+  const std::vector<float> none(frame.range_m.size(), 0.0F);
+  view.projection = core::Projection::kPerspective;
+  const ImageGrid sky(view, none, {4, 4});
+  sky.move(view_at({50, 0, 20}), moved);
+  EXPECT_NEAR(moved[static_cast<std::size_t>(sky.index(3, 3))].xy_px.x, 80, 1e-3);
+}
+
+}  // namespace
+}  // namespace vpe::warp
