@@ -9,12 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "paging/planet/codec.h"
+#include "vpe/base/json_integer.h"
 #include "vpe/base/number.h"
 #include "vpe/core/json_text.h"
 
 namespace paging {
 
 using nlohmann::json;
+using vpe::base::json_integer;
 
 const char* const kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -62,8 +64,8 @@ mars::VerticalDatum datum_from(const std::string& text, double radius_m) {
 mars::SourceInfo source_from(const json& j, double radius_m) {
   mars::SourceInfo s;
   s.name = j.at("name").get<std::string>();
-  s.size_bytes = j.at("size_bytes").get<std::int64_t>();
-  s.mtime_s = j.at("mtime_s").get<std::int64_t>();
+  s.size_bytes = json_integer<std::int64_t>(j.at("size_bytes"));
+  s.mtime_s = json_integer<std::int64_t>(j.at("mtime_s"));
   s.resolution_m = j.at("resolution_m").get<double>();
   s.quantum_m = j.at("quantum_m").get<double>();
   s.datum = datum_from(j.at("datum").get<std::string>(), radius_m);
@@ -207,21 +209,21 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     current = "datum";
     m.datum = datum_from(text("datum"), m.radius_m);
     m.shape = text("shape");
-    m.tile.k = value("tile_k").get<int>();
+    m.tile.k = json_integer<int>(value("tile_k"));
     m.quantum_m = value("quantum_m").get<double>();
     m.fill_m = value("fill_m").get<double>();
     m.sources = sources_from(value("sources"), m.radius_m);
     m.image_sources = sources_from(value("image_sources"), m.radius_m);
     m.resampling.max_m = value("resampling_max_m").get<double>();
     m.resampling.rms_m = value("resampling_rms_m").get<double>();
-    m.resampling.posts = value("resampling_posts").get<std::int64_t>();
+    m.resampling.posts = json_integer<std::int64_t>(value("resampling_posts"));
     m.lowest_radius_m = value("lowest_radius_m").get<double>();
     m.highest_radius_m = value("highest_radius_m").get<double>();
-    m.leaf_tiles = value("leaf_tiles").get<std::int64_t>();
-    m.tiles = value("tiles").get<std::int64_t>();
-    m.image_tiles = value("image_tiles").get<std::int64_t>();
-    m.finest_level = value("finest_level").get<int>();
-    m.finest_image_level = value("finest_image_level").get<int>();
+    m.leaf_tiles = json_integer<std::int64_t>(value("leaf_tiles"));
+    m.tiles = json_integer<std::int64_t>(value("tiles"));
+    m.image_tiles = json_integer<std::int64_t>(value("image_tiles"));
+    m.finest_level = json_integer<int>(value("finest_level"));
+    m.finest_image_level = json_integer<int>(value("finest_image_level"));
     m.program = text("program");
     m.identity = text("identity");
     m.illustration = value("illustration").get<bool>();

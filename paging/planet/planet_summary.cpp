@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "paging/planet/planet_meta.h"
+#include "vpe/base/json_integer.h"
 
 namespace paging {
 
 using nlohmann::json;
+using vpe::base::json_integer;
 
 namespace {
 
@@ -26,7 +28,7 @@ json error_json(const ResamplingError& error) {
 
 ResamplingError error_from(const json& j) {
   return {j.at("resampling_max_m").get<double>(), j.at("resampling_rms_m").get<double>(),
-          j.at("resampling_posts").get<std::int64_t>()};
+          json_integer<std::int64_t>(j.at("resampling_posts"))};
 }
 
 void set(ResamplingSum& sum, Wide squares) {
@@ -99,16 +101,16 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
   std::vector<LevelSummary> levels;
   for (const json& j : json::parse(text)) {
     LevelSummary l;
-    l.level = j.at("level").get<int>();
-    l.tiles = j.at("tiles").get<std::int64_t>();
-    l.leaf_tiles = j.at("leaf_tiles").get<std::int64_t>();
-    l.image_tiles = j.at("image_tiles").get<std::int64_t>();
-    l.bytes = j.at("bytes").get<std::int64_t>();
-    l.nodata_posts = j.at("holes").get<std::int64_t>();
+    l.level = json_integer<int>(j.at("level"));
+    l.tiles = json_integer<std::int64_t>(j.at("tiles"));
+    l.leaf_tiles = json_integer<std::int64_t>(j.at("leaf_tiles"));
+    l.image_tiles = json_integer<std::int64_t>(j.at("image_tiles"));
+    l.bytes = json_integer<std::int64_t>(j.at("bytes"));
+    l.nodata_posts = json_integer<std::int64_t>(j.at("holes"));
     l.resampling = error_from(j);
     if (j.contains("by_source")) {
       for (const json& own : j.at("by_source"))
-        l.resampling_by_source.push_back({own.at("source").get<int>(), error_from(own)});
+        l.resampling_by_source.push_back({json_integer<int>(own.at("source")), error_from(own)});
     }
     levels.push_back(l);
   }
@@ -129,15 +131,15 @@ std::string to_text(const ShardMeta& shard) {
 ShardMeta shard_from_text(const std::string& text) {
   const json j = json::parse(text);
   ShardMeta shard;
-  shard.id = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
+  shard.id = {json_integer<std::int64_t>(j.at("number")), json_integer<std::int64_t>(j.at("of"))};
   shard.mesh_ratio = j.at("mesh_ratio").get<double>();
   const auto sum_from = [](const json& s, std::size_t at) {
-    return ResamplingSum{s.at(at).get<double>(), s.at(at + 1).get<std::int64_t>(),
-                         s.at(at + 2).get<std::uint64_t>(), s.at(at + 3).get<std::uint64_t>()};
+    return ResamplingSum{s.at(at).get<double>(), json_integer<std::int64_t>(s.at(at + 1)),
+                         json_integer<std::uint64_t>(s.at(at + 2)), json_integer<std::uint64_t>(s.at(at + 3))};
   };
   if (j.contains("resampling_by_source")) {
     for (const json& s : j.at("resampling_by_source"))
-      shard.resampling[{s.at(0).get<int>(), s.at(1).get<int>()}] = sum_from(s, 2);
+      shard.resampling[{json_integer<int>(s.at(0)), json_integer<int>(s.at(1))}] = sum_from(s, 2);
   } else {  // before format 1.3: by level, from 0 on
     int level = 0;
     for (const json& s : j.at("resampling")) shard.resampling[{level++, -1}] = sum_from(s, 0);

@@ -191,6 +191,23 @@ TEST(PlanetFile, AnyChangeOfMetaIsSeen) {
   EXPECT_THROW(paging::from_rows(more, "x"), PlanetError);
 }
 
+// Numbers that no whole one of the program can hold, under right checksums: found by the fuzzer.
+TEST(PlanetFile, CountsThatAreNoneAreRefused) {
+  TempDir dir;
+  const std::filesystem::path file = dir / "p.vpe";
+  build_fake(file, FakeElevation(bumpy_height), 2e6);
+  for (const char* key : {"tile_k", "resampling_posts", "leaf_tiles", "tiles", "image_tiles", "finest_level",
+                          "finest_image_level"}) {
+    for (const char* bad : {"-1e300", "1e300", "2.5", "1e2", "99999999999999999999", "true", "\"7\"", "null"}) {
+      const std::filesystem::path copy = dir / "copy.vpe";
+      std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
+      change(copy, std::string("UPDATE meta SET value = '") + bad + "' WHERE key = '" + key + "'");
+      test_support::forge_checksums(copy.string());
+      EXPECT_NE(message(copy).find(std::string("meta '") + key), std::string::npos) << bad << ": " << message(copy);
+    }
+  }
+}
+
 TEST(PlanetFile, FlippedBitsAreNeverBelieved) {
   TempDir dir;
   const auto path = dir / "p.vpe";

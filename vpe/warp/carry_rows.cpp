@@ -29,12 +29,6 @@ void copy_row(const Scan& scan, std::span<const T> row, Out out) {
   }
 }
 
-std::uint32_t word(const base::Rgb& c) { return static_cast<std::uint32_t>(c.r | (c.g << 8) | (c.b << 16)); }
-
-base::Rgb rgb(std::uint32_t word) {
-  return {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
-          static_cast<std::uint8_t>(word >> 16)};
-}
 Scan scan_of(const core::View& from, const core::View& to, const CarryOptions& options) {
   const double aside_m = glm::dot(to.camera.position_m - from.camera.position_m, from.camera.axes.right);
   const double shift_px = to.principal_offset_px.x - from.principal_offset_px.x;
@@ -78,6 +72,7 @@ void carry_rows(const core::View& from, const core::Frame& frame, const core::Vi
   std::vector<float> added(static_cast<std::size_t>(tasks));
   const core::RayLengths from_lengths(from);
   const core::RayLengths to_lengths(to);
+  const bool has_same_lengths = from.principal_offset_px == to.principal_offset_px;
   const auto n = static_cast<std::size_t>(scan.count);
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
     RowBuffers row(scan);
@@ -87,19 +82,20 @@ void carry_rows(const core::View& from, const core::Frame& frame, const core::Vi
       const std::size_t first = static_cast<std::size_t>(y) * n;
       from_lengths.row(y, length);
       copy_row(scan, std::span<const float>(length), row.length.begin());
-      to_lengths.row(y, length);
-      copy_row(scan, std::span<const float>(length), row.new_length.begin());
-      copy_row(scan, std::span(frame.range_m).subspan(first, n), row.range.begin());
-      if (!frame.colour.empty()) {
-        std::ranges::transform(std::span(frame.colour).subspan(first, n), row.colour.begin(), word);
-        if (scan.is_mirrored) std::reverse(row.colour.begin(), row.colour.begin() + scan.count);
+      if (has_same_lengths) {
+        row.new_length = row.length;
+      } else {
+        to_lengths.row(y, length);
+        copy_row(scan, std::span<const float>(length), row.new_length.begin());
       }
+      copy_row(scan, std::span(frame.range_m).subspan(first, n), row.range.begin());
+      if (!frame.colour.empty())
+        copy_row(scan, std::span(frame.colour).subspan(first, n), row.colour.begin());
       added[task] = std::max(added[task], carry_row(scan, row, !frame.colour.empty()));
       copy_row(scan, std::span(std::as_const(row.new_range)).first(n), &into.range_m[first]);
       copy_row(scan, std::span(std::as_const(row.origin)).first(n), &into.origin[first]);
-      if (frame.colour.empty()) continue;
-      if (scan.is_mirrored) std::reverse(row.new_colour.begin(), row.new_colour.begin() + scan.count);
-      std::ranges::transform(std::span(row.new_colour).first(n), &into.colour[first], rgb);
+      if (!frame.colour.empty())
+        copy_row(scan, std::span(std::as_const(row.new_colour)).first(n), &into.colour[first]);
     }
   });
   for (const float px : added) into.added_px = std::max(into.added_px, static_cast<double>(px));

@@ -90,6 +90,32 @@ HWY_INLINE WordVec mix(WordVec a, WordVec b, WordVec share_256) {
   return hn::Or(red_blue, hn::ShiftLeft<8>(green));
 }
 
+// Makes a word of each colour, so that they can be gathered.
+HWY_INLINE void widen_colours(const Scan& scan, RowBuffers& row) {
+  static_assert(sizeof(base::Rgb) == 3);
+  const Words d;
+  const hn::Rebind<std::uint8_t, Words> d8;
+  for (int i = 0; i < scan.count; i += static_cast<int>(hn::Lanes(d))) {
+    hn::Vec<decltype(d8)> red;
+    hn::Vec<decltype(d8)> green;
+    hn::Vec<decltype(d8)> blue;
+    hn::LoadInterleaved3(d8, &row.colour[static_cast<std::size_t>(i)].r, red, green, blue);
+    const WordVec word = hn::Or(hn::PromoteTo(d, red), hn::Or(hn::ShiftLeft<8>(hn::PromoteTo(d, green)),
+                                                              hn::ShiftLeft<16>(hn::PromoteTo(d, blue))));
+    hn::StoreU(word, d, &row.word[static_cast<std::size_t>(i)]);
+  }
+}
+
+HWY_INLINE void store_colours(WordVec words, base::Rgb* out) {
+  const Words d;
+  const Ints di;
+  const hn::Rebind<std::uint8_t, Words> d8;
+  const WordVec byte = hn::Set(d, 0xFF);
+  const auto narrow = [&](WordVec word) HWY_ATTR { return hn::DemoteTo(d8, hn::BitCast(di, hn::And(word, byte))); };
+  hn::StoreInterleaved3(narrow(words), narrow(hn::ShiftRight<8>(words)), narrow(hn::ShiftRight<16>(words)), d8,
+                        &out->r);
+}
+
 HWY_INLINE float fill(const Scan& scan, RowBuffers& row, bool has_colour) {
   const Floats d;
   const Ints di;
@@ -148,18 +174,19 @@ HWY_INLINE float fill(const Scan& scan, RowBuffers& row, bool has_colour) {
     const FloatVec share_256 = scan.filters ? hn::Floor(hn::Add(hn::Mul(share, hn::Set(d, 256.0F)), half))
                                             : hn::IfThenElse(hn::Lt(share, half), zero, hn::Set(d, 256.0F));
     const Words dw;
-    const WordVec own = hn::GatherIndex(dw, row.colour.data(), left);
-    const WordVec other = hn::GatherIndex(dw, row.colour.data() + 1, left);
+    const WordVec own = hn::GatherIndex(dw, row.word.data(), left);
+    const WordVec other = hn::GatherIndex(dw, row.word.data() + 1, left);
     // Any share where nothing is carried.
     const FloatVec used = hn::IfThenElseZero(is_carried, share_256);
     const WordVec colour = mix(own, other, hn::BitCast(dw, hn::ConvertTo(di, used)));
-    hn::StoreU(hn::IfThenElseZero(hn::RebindMask(dw, is_carried), colour), dw, &row.new_colour[at]);
+    store_colours(hn::IfThenElseZero(hn::RebindMask(dw, is_carried), colour), &row.new_colour[at]);
   }
   return hn::GetLane(hn::MaxOfLanes(d, added));
 }
 
 float carry_row_kernel(const Scan& scan, RowBuffers& row, bool has_colour) {
   move_pixels(scan, row);
+  if (has_colour) widen_colours(scan, row);
   find_neighbours(scan, row);
   return fill(scan, row, has_colour);
 }
@@ -177,7 +204,8 @@ RowBuffers::RowBuffers(const Scan& scan) {
   const std::size_t size = static_cast<std::size_t>(scan.count) + kPad;
   for (std::vector<float>* member : {&length, &new_length, &range, &new_range, &inverse_depth, &place})
     member->resize(size);
-  for (std::vector<std::uint32_t>* member : {&colour, &new_colour}) member->resize(size);
+  for (std::vector<base::Rgb>* member : {&colour, &new_colour}) member->resize(size);
+  word.resize(size);
   first.resize(size);
   left.resize(size, -1);
   origin.resize(size);

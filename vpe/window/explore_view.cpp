@@ -194,7 +194,7 @@ void ExploreWindow::draw_view() {
   } else {
     list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
   }
-  shown_view_ = session_.view();
+  shown_view_ = lags() ? session_.view() : drawn_->request.draw.view;
   // Images of the terrain come first: few frames are shown between quick ones.
   constexpr double kQuickest_s = 1.0 / 60;
   constexpr double kSlowest_s = 1.0 / 40;

@@ -180,6 +180,8 @@ class ExploreWindow {
   // Returns the image shown last, or null before the first, and its pixels.
   const DrawnImage* drawn() const { return drawn_ ? &*drawn_ : nullptr; }
   const core::RgbImage& image() const { return last_image_; }
+  // Returns the view that the last frame shows, by its image or by one that follows the camera, or null before the first.
+  const core::View* shown_view() const { return shown_view_ ? &*shown_view_ : nullptr; }
   // Returns true if nothing moves, loads or waits to be drawn.
   bool is_at_rest() const;
   // Returns true if the image shown is the final one for the present state.

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/app/support/app_fixture.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {
@@ -178,6 +179,42 @@ TEST_F(Report, FeaturesRefuseWhatTheyCannotDo) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
+TEST_F(Report, PapersPutBothSideBySide) {
+  const Result result = vpe({"report", "papers", planet().string(), "--short", "--height", "300000", "--size", "200x160",
+                             "-o", "out", "--json", "-q"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = parse_json(result.out);
+  EXPECT_EQ(parse_json(read_text(dir_ / "out/papers.json")), report);
+  expect_page("out/papers.html", 0);
+  EXPECT_GT(report["eye_base_m"].get<double>(), 0);
+  for (const char* look : {"lit", "textured"}) {
+    const json& table = report["stereo-" + std::string(look)];
+    expect_csv("out/stereo-" + std::string(look) + ".csv", table);
+    const json one = row(table, {{"processors", 1}});
+    for (const char* figure : {"left_s", "right_s", "right_full_s", "right_to_left", "pair_share", "casting_share"})
+      EXPECT_GT(one[figure].get<double>(), 0) << look << " " << figure;
+    // Published rows without such a machine here have no figures of it.
+    const json sixteen = row(table, {{"processors", 16}});
+    EXPECT_GT(sixteen["published_left_s"].get<double>(), sixteen["published_right_s"].get<double>());
+    EXPECT_TRUE(sixteen["left_s"].is_null());
+    for (const char* part : {"a-left", "b-right", "c-cast", "d-right-full", "e-differences", "f-differences-unfiltered"}) {
+      const vpe::core::RgbImage image =
+          vpe::core::read_image(dir_ / "out" / ("stereo-" + std::string(look) + "-" + part + ".png"));
+      EXPECT_EQ(image.width, 200) << part;
+      EXPECT_EQ(image.height, 160) << part;
+    }
+  }
+  const json& figure = report["stereo-figure-8"];
+  expect_csv("out/stereo-figure-8.csv", figure);
+  EXPECT_EQ(figure["rows"].size(), 6);
+  const json difference = row(figure, {{"quantity", "mean colour difference from the right image in full"}});
+  EXPECT_NEAR(difference["published"].get<double>(), 0.031, 1e-9);
+  EXPECT_LT(difference["lit"].get<double>(), 0.031);
+  EXPECT_GT(difference["lit"].get<double>(), 0);
+  expect_failure({"report", "papers", planet().string(), "-o", "out", "--size", "9"}, 2, {"9"});
+  expect_failure({"report", "papers", planet().string(), "-o", "out", "--eye-base", "0"}, 2, {"--eye-base"});
+}
+
 class LongReport : public Report {};
 
 TEST_F(LongReport, AllInOneFolder) {
@@ -188,7 +225,7 @@ TEST_F(LongReport, AllInOneFolder) {
   EXPECT_EQ(result.out + result.err, "");
   const std::set<std::string> there = files("all");
   const std::string page = read_text(dir_ / "all/report.html");
-  for (const char* report : {"error-time", "scaling", "features"}) {
+  for (const char* report : {"error-time", "scaling", "features", "papers"}) {
     for (const char* kind : {".html", ".json"})
       EXPECT_TRUE(there.contains(std::string(report) + kind)) << report;
   }

@@ -1,10 +1,12 @@
-// Measures how the explore window feels: images a second while the camera moves, time from an input to the first
+// Measures how the explore window feels: images and frames a second while the camera moves, time from an input to the first
 // image that shows it, time until the image at rest, processor time while only the cursor moves.
 //
 // Usage: window_bench PLANET [--size WxH] [--backend auto|polygon|ray] [--seconds S] [--memory MB]
+//                     [--warp off|polynomial|grid]
 //
 // A simulated hand on a virtual screen moves the mouse 60 times a second, on a thread of its own. An input counts as
-// shown when the window has presented an image of the first pose that it read after the input.
+// shown when the window has presented a frame of the first pose that it read after the input: a finished image, or the
+// last one as that pose sees it.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -76,6 +78,7 @@ class Hand {
 
 struct Feel {
   double images_a_second = 0;
+  double frames_a_second = 0;
   double cores = 0;
   std::vector<double> latency_ms;
 };
@@ -89,8 +92,9 @@ Feel feel(ExploreWindow& window, Hand& hand, double seconds) {
   Feel feel;
   std::vector<Step> steps;
   std::vector<double> waiting_s;
-  std::int64_t images = window.images();
-  const std::int64_t first = images;
+  const std::int64_t first = window.images();
+  std::int64_t frames = window.frames();
+  const std::int64_t first_frame = frames;
   const double begun_s = now_s();
   const double begun_processor_s = processor_s();
   hand.take();
@@ -99,9 +103,9 @@ Feel feel(ExploreWindow& window, Hand& hand, double seconds) {
     window.step(0.02);
     steps.push_back({step_s, window.session().view().camera});
     for (const double time_s : hand.take()) waiting_s.push_back(time_s);
-    if (window.images() == images) continue;
-    images = window.images();
-    const mars::CameraPose& shown = window.drawn()->request.draw.view.camera;
+    if (window.frames() == frames || window.shown_view() == nullptr) continue;
+    frames = window.frames();
+    const mars::CameraPose& shown = window.shown_view()->camera;
     const auto of = std::find_if(steps.rbegin(), steps.rend(), [&](const Step& s) {
       return s.camera.position_m == shown.position_m && s.camera.axes.forward == shown.axes.forward &&
              s.camera.axes.up == shown.axes.up;
@@ -115,7 +119,8 @@ Feel feel(ExploreWindow& window, Hand& hand, double seconds) {
     });
   }
   const double took_s = now_s() - begun_s;
-  feel.images_a_second = static_cast<double>(images - first) / took_s;
+  feel.images_a_second = static_cast<double>(window.images() - first) / took_s;
+  feel.frames_a_second = static_cast<double>(frames - first_frame) / took_s;
   feel.cores = (processor_s() - begun_processor_s) / took_s;
   return feel;
 }
@@ -127,8 +132,8 @@ double settle_s(ExploreWindow& window) {
 }
 
 void print(const char* view, const char* what, const Feel& f, double settled_s) {
-  std::printf("| %-12s | %-6s | %5.1f | %4.0f | %4.0f | %4.2f | %4.2f |\n", view, what, f.images_a_second,
-              part(f.latency_ms, 0.5), part(f.latency_ms, 0.95), f.cores, settled_s);
+  std::printf("| %-12s | %-6s | %5.1f | %5.1f | %4.0f | %4.0f | %4.2f | %4.2f |\n", view, what, f.images_a_second,
+              f.frames_a_second, part(f.latency_ms, 0.5), part(f.latency_ms, 0.95), f.cores, settled_s);
   std::fflush(stdout);
 }
 
@@ -138,13 +143,15 @@ int main(int argc, char** argv) {
   using namespace vpe;
   if (argc < 2) {
     std::fprintf(stderr,
-                 "usage: window_bench PLANET [--size WxH] [--backend NAME] [--seconds S] [--memory MB]\n");
+                 "usage: window_bench PLANET [--size WxH] [--backend NAME] [--seconds S] [--memory MB] "
+                 "[--warp off|polynomial|grid]\n");
     return 2;
   }
   int width = 1280;
   int height = 720;
   double seconds = 5;
   core::DrawnBy drawn_by = core::DrawnBy::kAuto;
+  explore::Warp warp = explore::Warp::kGrid;
   app::Common common;
   for (int n = 2; n + 1 < argc; n += 2) {
     const std::string key = argv[n];
@@ -152,6 +159,10 @@ int main(int argc, char** argv) {
     if (key == "--size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) != 2) return 2;
     if (key == "--seconds") seconds = std::stod(value);
     if (key == "--memory") common.memory_mb = std::stoi(value);
+    if (key == "--warp")
+      warp = value == "off"          ? explore::Warp::kOff
+             : value == "polynomial" ? explore::Warp::kPolynomial
+                                     : explore::Warp::kGrid;
     if (key == "--backend")
       drawn_by = value == "ray"       ? core::DrawnBy::kRay
                  : value == "polygon" ? core::DrawnBy::kPolygon
@@ -164,6 +175,7 @@ int main(int argc, char** argv) {
   }
   window::ExploreSetup setup = bench::bench_setup(argv[1], width, height, common);
   setup.drawn_by = drawn_by;
+  setup.preferences.warp = warp;
   (void)setup.session.settings.set("lod.frame_ms", "40");
   ExploreWindow window(std::move(setup));
   Robot robot;
@@ -177,7 +189,7 @@ int main(int argc, char** argv) {
                           {"gale 12 km", {137.4, -5.6, 12'000, 0, -25, 0}},
                           {"gale 30 m", {137.4, -4.6, -4470, 0, -5, 0}}};
   std::printf(
-      "%dx%d, %s, %d MB\n| view | motion | images/s | input to image: median | 95 %% (ms) | cores | settled (s) |\n",
+      "%dx%d, %s, %d MB\n| view | motion | images/s | frames/s | input to frame: median | 95 %% (ms) | cores | settled (s) |\n",
       width, height, std::string(core::to_string(drawn_by)).c_str(), common.memory_mb);
   const double x = width * 0.62;
   const double y = height * 0.55;

@@ -3,6 +3,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "vpe/base/json_integer.h"
+
 namespace vpe::app {
 
 namespace {
@@ -29,9 +31,11 @@ void visit(Figures& f, const Field& field) {
 }
 
 void read(const json& value, double& to) { to = value.is_null() ? kNotKnown : value.get<double>(); }
-template <class T>
-void read(const json& value, T& to) {
-  to = value.get<T>();
+void read(const json& value, int& to) { to = base::json_integer<int>(value); }
+void read(const json& value, std::int64_t& to) { to = base::json_integer<std::int64_t>(value); }
+void read(const json& value, std::vector<int>& to) {
+  to.clear();
+  for (const json& one : value) to.push_back(base::json_integer<int>(one));
 }
 
 }  // namespace

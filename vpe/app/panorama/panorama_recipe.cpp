@@ -6,6 +6,7 @@
 #include "mars/geodesy/sphere.h"
 #include "panorama/image/metadata_error.h"
 #include "vpe/app/panorama/panorama_request.h"
+#include "vpe/base/json_integer.h"
 
 namespace vpe::app {
 
@@ -29,12 +30,7 @@ std::optional<Value> find(const json& from, const char* key) {
   const auto found = from.find(key);
   if (found == from.end()) return std::nullopt;
   try {
-    // The library converts any number to a whole one, also one that does not fit.
-    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
-      const bool fits = found->is_number_unsigned() ? std::in_range<Value>(found->get<std::uint64_t>())
-                                                    : std::in_range<Value>(found->get<std::int64_t>());
-      if (!found->is_number_integer() || !fits) refuse(key);
-    }
+    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) return base::json_integer<Value>(*found);
     return found->get<Value>();
   } catch (const json::exception&) {
     refuse(key);

@@ -122,7 +122,7 @@ core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
   std::ranges::transform(carried_.origin, wanted_.begin(), [](warp::Origin origin) {
     return static_cast<std::uint8_t>(origin == warp::Origin::kOpen ? 1 : 0);
   });
-  core::Frame frame{carried_.width, carried_.height, carried_.colour, carried_.range_m};
+  core::Frame frame{carried_.width, carried_.height, std::move(carried_.colour), carried_.range_m};
   const std::vector<float> unknown_m(options_.uses_clear_air ? 0 : wanted_.size());
   const auto begun = std::chrono::steady_clock::now();
   core::DrawResult result = rays_->draw_pixels(

@@ -49,7 +49,7 @@ class PairDrawer {
 
   // Returns what the drawn pixels of the last second eye took, seconds; 0 if all were drawn.
   double drawing_s() const { return drawing_s_; }
-  // Returns where each pixel of the last second eye comes from; without pixels if all were drawn.
+  // Returns where each pixel of the last second eye comes from, without colours; without pixels if all were drawn.
   const warp::CarriedImage& carried() const { return carried_; }
 
  private:

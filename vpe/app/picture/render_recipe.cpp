@@ -8,6 +8,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/base/file.h"
+#include "vpe/base/json_integer.h"
 #include "vpe/base/number.h"
 #include "vpe/core/image/png_text.h"
 
@@ -50,8 +51,8 @@ RenderRecipe recipe_from(const nlohmann::json& top) {
   r.pose = parse_pose("pose", from.at("pose").get<std::string>()).pose;
   if (from.contains("cull_from"))
     r.cull_pose = parse_pose("cull_from", from["cull_from"].get<std::string>()).pose;
-  const Size size = parse_size(std::to_string(from.at("width").get<std::int64_t>()) + "x" +
-                               std::to_string(from.at("height").get<std::int64_t>()));
+  const Size size = parse_size(std::to_string(base::json_integer<std::int64_t>(from.at("width"))) + "x" +
+                               std::to_string(base::json_integer<std::int64_t>(from.at("height"))));
   r.width = size.width;
   r.height = size.height;
   r.fov_deg = from.at("fov_deg").get<double>();
