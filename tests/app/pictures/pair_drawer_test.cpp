@@ -44,9 +44,14 @@ Eyes eyes_at(const mars::Pose& pose, double radius_m, double base_m) {
 class PairDrawerTest : public test_support::GlTest {
  protected:
   PairDrawerTest()
-      : planet_(test_support::build_fake(dir_ / "bumpy.vpe",
-                                         test_support::FakeElevation(test_support::bumpy_height), 20'000)),
-        rays_(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2})) {}
+      : planet_(bumpy_planet()), rays_(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2})) {}
+
+  static std::shared_ptr<const paging::PlanetFile> bumpy_planet() {
+    static const test_support::TempDir folder;
+    static const auto planet = test_support::build_fake(
+        folder / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height), 20'000);
+    return planet;
+  }
 
   // Returns a pose somewhere above the ground that looks ahead or down.
   mars::Pose any_pose(Random& random, double& height_m) const {
