@@ -50,7 +50,7 @@ run_sanitized() {
   local reports="$PWD/build/$1/reports" status=0
   rm -rf "$reports"
   mkdir -p "$reports"
-  ASAN_OPTIONS="detect_leaks=1:log_path=$reports/address" TSAN_OPTIONS="detect_deadlocks=0:log_path=$reports/thread" \
+  ASAN_OPTIONS="detect_leaks=1:log_path=$reports/address" TSAN_OPTIONS="log_path=$reports/thread" \
     UBSAN_OPTIONS="print_stacktrace=1:log_path=$reports/undefined" \
     run "$1" -L shard --repeat until-pass:2 --timeout 6000 || status=$?
   local report

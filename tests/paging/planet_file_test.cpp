@@ -203,7 +203,8 @@ TEST(PlanetFile, CountsThatAreNoneAreRefused) {
       std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
       change(copy, std::string("UPDATE meta SET value = '") + bad + "' WHERE key = '" + key + "'");
       test_support::forge_checksums(copy.string());
-      EXPECT_NE(message(copy).find(std::string("meta '") + key), std::string::npos) << bad << ": " << message(copy);
+      EXPECT_NE(message(copy).find(std::string("meta '") + key), std::string::npos)
+          << bad << ": " << message(copy);
     }
   }
 }

@@ -13,10 +13,11 @@ namespace vpe::base {
 template <class T, class Json>
 T json_integer(const Json& value) {
   static_assert(std::is_integral_v<T> && !std::is_same_v<T, bool>);
-  const bool fits = value.is_number_unsigned() ? std::in_range<T>(value.template get<std::uint64_t>())
+  const bool fits = value.is_number_unsigned()  ? std::in_range<T>(value.template get<std::uint64_t>())
                     : value.is_number_integer() ? std::in_range<T>(value.template get<std::int64_t>())
                                                 : false;
-  if (!fits) throw nlohmann::json::type_error::create(302, "a whole number is expected, found " + value.dump(), &value);
+  if (!fits)
+    throw nlohmann::json::type_error::create(302, "a whole number is expected, found " + value.dump(), &value);
   return value.template get<T>();
 }
 

@@ -89,8 +89,7 @@ void carry_rows(const core::View& from, const core::Frame& frame, const core::Vi
         copy_row(scan, std::span<const float>(length), row.new_length.begin());
       }
       copy_row(scan, std::span(frame.range_m).subspan(first, n), row.range.begin());
-      if (!frame.colour.empty())
-        copy_row(scan, std::span(frame.colour).subspan(first, n), row.colour.begin());
+      if (!frame.colour.empty()) copy_row(scan, std::span(frame.colour).subspan(first, n), row.colour.begin());
       added[task] = std::max(added[task], carry_row(scan, row, !frame.colour.empty()));
       copy_row(scan, std::span(std::as_const(row.new_range)).first(n), &into.range_m[first]);
       copy_row(scan, std::span(std::as_const(row.origin)).first(n), &into.origin[first]);

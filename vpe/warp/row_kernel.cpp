@@ -111,7 +111,8 @@ HWY_INLINE void store_colours(WordVec words, base::Rgb* out) {
   const Ints di;
   const hn::Rebind<std::uint8_t, Words> d8;
   const WordVec byte = hn::Set(d, 0xFF);
-  const auto narrow = [&](WordVec word) HWY_ATTR { return hn::DemoteTo(d8, hn::BitCast(di, hn::And(word, byte))); };
+  const auto narrow = [&](WordVec word)
+                          HWY_ATTR { return hn::DemoteTo(d8, hn::BitCast(di, hn::And(word, byte))); };
   hn::StoreInterleaved3(narrow(words), narrow(hn::ShiftRight<8>(words)), narrow(hn::ShiftRight<16>(words)), d8,
                         &out->r);
 }

@@ -28,19 +28,19 @@ struct RowBuffers {
 
   explicit RowBuffers(const Scan& scan);
 
-  std::vector<float> length;              // in: of the first image's rays, relative to their depth
-  std::vector<float> new_length;          // in: of the new image's
-  std::vector<float> range;               // in: of the first image, metres
-  std::vector<float> new_range;           // out: of the new one, as CarriedImage::range_m
+  std::vector<float> length;          // in: of the first image's rays, relative to their depth
+  std::vector<float> new_length;      // in: of the new image's
+  std::vector<float> range;           // in: of the first image, metres
+  std::vector<float> new_range;       // out: of the new one, as CarriedImage::range_m
   std::vector<base::Rgb> colour;      // in: of the first image
   std::vector<base::Rgb> new_colour;  // out
-  std::vector<Origin> origin;             // out
+  std::vector<Origin> origin;         // out
 
   std::vector<float> inverse_depth;  // of the first image's pixels, 1 / m; 0 for sky
   std::vector<float> place;          // of them in the new image
   std::vector<int> first;  // pixel of the new image whose centre is the first that is not before that place
   std::vector<std::uint32_t> word;  // of the first image: red in the lowest byte, then green and blue
-  std::vector<int> left;   // by pixel of the new image: the neighbour on its left; -1: none
+  std::vector<int> left;            // by pixel of the new image: the neighbour on its left; -1: none
 };
 
 // Carries a row. Returns the largest bound of what carrying adds to the position of a pixel, in pixels. The result is the

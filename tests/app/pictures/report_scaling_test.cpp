@@ -180,8 +180,8 @@ TEST_F(Report, FeaturesRefuseWhatTheyCannotDo) {
 }
 
 TEST_F(Report, PapersPutBothSideBySide) {
-  const Result result = vpe({"report", "papers", planet().string(), "--short", "--height", "300000", "--size", "200x160",
-                             "-o", "out", "--json", "-q"});
+  const Result result = vpe({"report", "papers", planet().string(), "--short", "--height", "300000", "--size",
+                             "200x160", "-o", "out", "--json", "-q"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json report = parse_json(result.out);
   EXPECT_EQ(parse_json(read_text(dir_ / "out/papers.json")), report);
@@ -191,13 +191,15 @@ TEST_F(Report, PapersPutBothSideBySide) {
     const json& table = report["stereo-" + std::string(look)];
     expect_csv("out/stereo-" + std::string(look) + ".csv", table);
     const json one = row(table, {{"processors", 1}});
-    for (const char* figure : {"left_s", "right_s", "right_full_s", "right_to_left", "pair_share", "casting_share"})
+    for (const char* figure :
+         {"left_s", "right_s", "right_full_s", "right_to_left", "pair_share", "casting_share"})
       EXPECT_GT(one[figure].get<double>(), 0) << look << " " << figure;
     // Published rows without such a machine here have no figures of it.
     const json sixteen = row(table, {{"processors", 16}});
     EXPECT_GT(sixteen["published_left_s"].get<double>(), sixteen["published_right_s"].get<double>());
     EXPECT_TRUE(sixteen["left_s"].is_null());
-    for (const char* part : {"a-left", "b-right", "c-cast", "d-right-full", "e-differences", "f-differences-unfiltered"}) {
+    for (const char* part :
+         {"a-left", "b-right", "c-cast", "d-right-full", "e-differences", "f-differences-unfiltered"}) {
       const vpe::core::RgbImage image =
           vpe::core::read_image(dir_ / "out" / ("stereo-" + std::string(look) + "-" + part + ".png"));
       EXPECT_EQ(image.width, 200) << part;

@@ -132,8 +132,9 @@ double settle_s(ExploreWindow& window) {
 }
 
 void print(const char* view, const char* what, const Feel& f, double settled_s) {
-  std::printf("| %-12s | %-6s | %5.1f | %5.1f | %4.0f | %4.0f | %4.2f | %4.2f |\n", view, what, f.images_a_second,
-              f.frames_a_second, part(f.latency_ms, 0.5), part(f.latency_ms, 0.95), f.cores, settled_s);
+  std::printf("| %-12s | %-6s | %5.1f | %5.1f | %4.0f | %4.0f | %4.2f | %4.2f |\n", view, what,
+              f.images_a_second, f.frames_a_second, part(f.latency_ms, 0.5), part(f.latency_ms, 0.95), f.cores,
+              settled_s);
   std::fflush(stdout);
 }
 

@@ -30,7 +30,8 @@ std::optional<Value> find(const json& from, const char* key) {
   const auto found = from.find(key);
   if (found == from.end()) return std::nullopt;
   try {
-    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) return base::json_integer<Value>(*found);
+    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>)
+      return base::json_integer<Value>(*found);
     return found->get<Value>();
   } catch (const json::exception&) {
     refuse(key);
