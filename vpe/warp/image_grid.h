@@ -5,7 +5,7 @@
 // of their own. Pure.
 //
 // Typical usage:
-//   const ImageGrid grid(view, frame.range_m, {32, 18});
+//   const ImageGrid grid(view, frame.range_m, {64, 36});
 //   grid.move(newest_view, vertices);                   // each frame of the display
 //   for (const glm::ivec2& cell : far_to_near(grid, vertices)) draw(cell);
 #pragma once

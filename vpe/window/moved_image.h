@@ -12,7 +12,7 @@ struct ImDrawList;
 namespace vpe::window {
 
 // Number of cells of an image that follows the camera. More: nearer to the ground's relief, slower.
-inline constexpr glm::ivec2 kMovedCells{32, 18};
+inline constexpr glm::ivec2 kMovedCells{64, 36};
 
 // Returns true if two views see the same, whatever their size.
 bool is_same_sight(const core::View& a, const core::View& b);
