@@ -77,6 +77,14 @@ void require_halves(const std::string& file, const scripts::Flight& flight) {
     refuse("ou", "height", flight.view.height);
 }
 
+// Returns the memory of the film's renderer: where second eyes are carried, what draws them has a part of it.
+int renderer_memory_mb(const FlyArguments& arguments, const Common& common, const scripts::Flight& flight) {
+  const bool has_pairs = std::ranges::any_of(
+      flight.views, [](const scripts::ViewCommand& command) { return command.view.eyes && command.view.eyes->layout; });
+  return arguments.stereo.carries() && has_pairs ? common.memory_mb - pair_memory_mb(common.memory_mb)
+                                                 : common.memory_mb;
+}
+
 // Returns the files that the film reads, also those that settings of the flight name.
 std::vector<fs::path> inputs_of(const FlyArguments& arguments, const scripts::Flight& flight,
                                 core::Settings settings) {
@@ -250,7 +258,8 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   const auto plan_of = [&](const BackendChoice& chosen) {
     PlannedFilm film{
         chosen.backend,
-        FilmPlan({version(), planet->meta().identity, chosen.backend, common.memory_mb}, flight.view,
+        FilmPlan({version(), planet->meta().identity, chosen.backend, renderer_memory_mb(arguments, common, flight)},
+                 flight.view,
                  scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
                  chosen.settings, parse_interest(image),
                  {image.backend ? std::nullopt : std::optional(base), terrain,
@@ -335,12 +344,14 @@ void fly(FlyArguments& arguments, const Common& common) {
                         scripts::version_of(flight));
   auto start = std::chrono::steady_clock::now();
   bool is_begun = false;
+  Common rest = common;
+  rest.memory_mb = renderer_memory_mb(arguments, common, flight);
   const auto renderer = [&](core::Backend backend) {
     RenderOptions options = arguments.image;
     options.backend = backend;
     std::unique_ptr<core::Renderer> made;
     try {
-      made = make_renderer(options, common, planet);
+      made = make_renderer(options, rest, planet);
     } catch (const gl::ContextError& e) {
       if (is_named || flight.views.empty()) throw;
       throw std::runtime_error(std::string(e.what()) + "; --backend ray draws all frames by rays");
@@ -352,7 +363,9 @@ void fly(FlyArguments& arguments, const Common& common) {
   const auto pair = [&](core::Renderer& first_eyes, double gap_px) {
     return std::make_unique<PairDrawer>(
         first_eyes, planet,
-        PairOptions{.gap_px = gap_px, .memory_bytes = memory_bytes(common) / 4, .threads = common.threads});
+        PairOptions{.gap_px = gap_px,
+                    .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
+                    .threads = common.threads});
   };
   session.make(plan, reports, arguments.image, {renderer, pair}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);

@@ -27,6 +27,9 @@ struct PairOptions {
   int threads = 0;  // 0: all cores
 };
 
+// Returns the part of `memory_mb` that PairDrawer gets as PairOptions::memory_bytes; the rest is for the first eyes' renderer.
+constexpr int pair_memory_mb(int memory_mb) { return memory_mb / 4; }
+
 // Returns why a request's second eye cannot be carried, or "": rays have to be able to draw it, in perspective with one
 // sample a pixel.
 std::string why_not_carried(const core::DrawRequest& request);

@@ -231,7 +231,8 @@ std::unique_ptr<PairDrawer> pair_drawer(const RenderArguments& arguments, const 
     throw UsageError("--stereo-method reproject: " + why + "; give --stereo-method full");
   return std::make_unique<PairDrawer>(renderer, planet,
                                       PairOptions{.gap_px = arguments.stereo.method.gap_px,
-                                                  .memory_bytes = memory_bytes(common) / 4,
+                                                  .memory_bytes = std::size_t{1048576} *
+                                                                  static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
                                                   .threads = common.threads});
 }
 
@@ -281,7 +282,9 @@ void render(RenderArguments& arguments, const Common& common) {
   require_above_ground(arguments, planet, request);
   std::vector<lod::TileExplanation> explained;  // of what rays drew last
   std::vector<lod::TileExplanation> cast;       // of the image
-  const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named,
+  Common rest = common;
+  if (arguments.stereo.method.carries()) rest.memory_mb -= pair_memory_mb(common.memory_mb);
+  const auto renderer = renderer_for(arguments, rest, planet, settings, request, is_backend_named,
                                      arguments.explain_lod.empty() ? nullptr : &explained);
   RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
   recipe.palette = take_palette_of_view(request, planet, common);
