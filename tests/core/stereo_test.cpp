@@ -130,4 +130,10 @@ TEST(Stereo, Names) {
   EXPECT_FALSE(vpe::core::parse_stereo("SBS"));
 }
 
+TEST(Stereo, NoDistanceOfConvergenceIsInfinity) {
+  EXPECT_EQ(vpe::core::convergence_at(0), std::nullopt);
+  EXPECT_EQ(vpe::core::convergence_at(-1), std::nullopt);
+  EXPECT_EQ(vpe::core::convergence_at(80), 80.0);
+}
+
 }  // namespace

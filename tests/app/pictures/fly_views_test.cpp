@@ -174,7 +174,9 @@ TEST_F(FlyViews, SecondEyesAreCarriedWhereTheyCanBe) {
   EXPECT_EQ(summary("carried", reproject, "pairs.flight")["made"], 5);
   for (int k = 0; k < 5; ++k) {
     // Rays cannot draw wireframes: such pairs are drawn in full.
-    const auto pixels = [&](const std::string& folder) { return vpe::core::read_image(frame(folder, k)).pixels; };
+    const auto pixels = [&](const std::string& folder) {
+      return vpe::core::read_image(frame(folder, k)).pixels;
+    };
     EXPECT_EQ(pixels("full") == pixels("carried"), k >= 3) << k;
   }
   EXPECT_EQ(vpe::core::read_image(frame("carried", 0)).pixels,

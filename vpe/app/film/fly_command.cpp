@@ -79,8 +79,9 @@ void require_halves(const std::string& file, const scripts::Flight& flight) {
 
 // Returns the memory of the film's renderer: where second eyes are carried, what draws them has a part of it.
 int renderer_memory_mb(const FlyArguments& arguments, const Common& common, const scripts::Flight& flight) {
-  const bool has_pairs = std::ranges::any_of(
-      flight.views, [](const scripts::ViewCommand& command) { return command.view.eyes && command.view.eyes->layout; });
+  const bool has_pairs = std::ranges::any_of(flight.views, [](const scripts::ViewCommand& command) {
+    return command.view.eyes && command.view.eyes->layout;
+  });
   return arguments.stereo.carries() && has_pairs ? common.memory_mb - pair_memory_mb(common.memory_mb)
                                                  : common.memory_mb;
 }
@@ -258,12 +259,12 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   const auto plan_of = [&](const BackendChoice& chosen) {
     PlannedFilm film{
         chosen.backend,
-        FilmPlan({version(), planet->meta().identity, chosen.backend, renderer_memory_mb(arguments, common, flight)},
-                 flight.view,
-                 scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
-                 chosen.settings, parse_interest(image),
-                 {image.backend ? std::nullopt : std::optional(base), terrain,
-                  arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt})};
+        FilmPlan(
+            {version(), planet->meta().identity, chosen.backend, renderer_memory_mb(arguments, common, flight)},
+            flight.view, scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
+            chosen.settings, parse_interest(image),
+            {image.backend ? std::nullopt : std::optional(base), terrain,
+             arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt})};
     if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
     film.plan.take_palettes(*palettes);
     return film;
@@ -363,9 +364,10 @@ void fly(FlyArguments& arguments, const Common& common) {
   const auto pair = [&](core::Renderer& first_eyes, double gap_px) {
     return std::make_unique<PairDrawer>(
         first_eyes, planet,
-        PairOptions{.gap_px = gap_px,
-                    .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
-                    .threads = common.threads});
+        PairOptions{
+            .gap_px = gap_px,
+            .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
+            .threads = common.threads});
   };
   session.make(plan, reports, arguments.image, {renderer, pair}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);

@@ -229,11 +229,12 @@ std::unique_ptr<PairDrawer> pair_drawer(const RenderArguments& arguments, const 
   if (!arguments.stereo.method.carries()) return nullptr;
   if (const std::string why = why_not_carried(request); !why.empty())
     throw UsageError("--stereo-method reproject: " + why + "; give --stereo-method full");
-  return std::make_unique<PairDrawer>(renderer, planet,
-                                      PairOptions{.gap_px = arguments.stereo.method.gap_px,
-                                                  .memory_bytes = std::size_t{1048576} *
-                                                                  static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
-                                                  .threads = common.threads});
+  return std::make_unique<PairDrawer>(
+      renderer, planet,
+      PairOptions{
+          .gap_px = arguments.stereo.method.gap_px,
+          .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
+          .threads = common.threads});
 }
 
 // Writes the maps of a carried eye that were asked for.
@@ -371,6 +372,8 @@ void add_render(CLI::App& program, Common& common) {
         "vpe render mars.vpe --pose -75,5,9000000,0,-90,0 --fov 50 --set mode=coloured -o globe.png"},
        {"range of every pixel, bounds of the error, sun by date",
         "vpe render mars.vpe --pose -59.2,-13.7,5000 --sun 2026-11-20T12:00Z -o view.png --range view.tif --certificate view.json"},
+       {"a pair for red-cyan glasses, the right eye carried from the left one",
+        "vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 --stereo anaglyph --stereo-method reproject -o pair.png"},
        {"the same image again", "vpe render mars.vpe --from-image view.png -o same.png"}});
   command->callback([arguments, &common] { render(*arguments, common); });
 }
