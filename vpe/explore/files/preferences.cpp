@@ -67,8 +67,8 @@ const core::KeyRegistry<Preferences>& preference_keys() {
       {"draw.budget_ms", Declare::number<&P::draw_budget_ms>(0, 1000), "",
        "milliseconds that an image may take while the camera moves, held by drawing coarser; 0 = no limit"},
       {"draw.warp",
-       Declare::choice<&P::warp>({core::word("off", Warp::kOff), core::word("polynomial", Warp::kPolynomial),
-                                  core::word("grid", Warp::kGrid)}),
+       Declare::choice<&P::warp>({core::word("grid", Warp::kGrid), core::word("polynomial", Warp::kPolynomial),
+                                  core::word("off", Warp::kOff)}),
        "",
        "while an image is drawn the last one follows the camera: as a grid with the distances of the ground; by one pair "
        "of polynomials; or not at all"},
