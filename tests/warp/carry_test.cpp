@@ -17,15 +17,13 @@ namespace vpe::warp {
 namespace {
 
 using test_support::Box;
+using test_support::hills;
 using test_support::image_of;
+using test_support::random_in;
 using test_support::Scene;
 using test_support::view_at;
 
 constexpr unsigned kSeed = 20261125;
-
-double random_in(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
 
 // Carries by cells also what would be carried by rows.
 CarriedImage by_cells(const core::View& from, const core::Frame& frame, const core::View& to,
@@ -84,14 +82,6 @@ Errors errors_of(const CarriedImage& carried, const core::View& from, const core
     }
   }
   return errors;
-}
-
-Scene hills() {
-  Scene scene;
-  scene.floors.push_back({{0, 0, 1}, 0});
-  for (int n = 0; n < 12; ++n)
-    scene.spheres.push_back({{-220.0 + 40 * n, 150.0 + 37 * (n % 5), -12}, 24.0 + 3 * (n % 4)});
-  return scene;
 }
 
 Scene comb() {

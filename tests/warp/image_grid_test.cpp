@@ -14,23 +14,12 @@
 namespace vpe::warp {
 namespace {
 
+using test_support::hills;
 using test_support::image_of;
-using test_support::Scene;
+using test_support::random_in;
 using test_support::view_at;
 
 constexpr unsigned kSeed = 20261125;
-
-double random_in(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-Scene ground() {
-  Scene scene;
-  scene.floors.push_back({{0, 0, 1}, 0});
-  for (int n = 0; n < 12; ++n)
-    scene.spheres.push_back({{-220.0 + 40 * n, 150.0 + 37 * (n % 5), -12}, 24.0 + 3 * (n % 4)});
-  return scene;
-}
 
 // Returns where the new camera sees what a place of an image shows, by the whole chain of rays and points.
 glm::dvec2 seen_at(const core::View& from, const core::View& to, const glm::dvec2& place_px, double depth_m) {
@@ -42,7 +31,7 @@ glm::dvec2 seen_at(const core::View& from, const core::View& to, const glm::dvec
 TEST(ImageGrid, VerticesMoveToWhereTheNewCameraSeesThem) {
   std::mt19937 random(kSeed);
   const core::View from = view_at({3, 0, 22}, 4, -8, 3);
-  const core::Frame frame = image_of(ground(), from);
+  const core::Frame frame = image_of(hills(), from);
   const ImageGrid grid(from, frame.range_m, {16, 12});
   EXPECT_EQ(grid.cells(), glm::ivec2(18, 14));
   ASSERT_EQ(grid.places().size(), 19U * 15U);
@@ -75,7 +64,7 @@ TEST(ImageGrid, VerticesMoveToWhereTheNewCameraSeesThem) {
 
 TEST(ImageGrid, TheSameViewLeavesEachVertexInItsPlace) {
   const core::View view = view_at({0, 0, 20}, 30, -20, 12);
-  const ImageGrid grid(view, image_of(ground(), view).range_m, {8, 6});
+  const ImageGrid grid(view, image_of(hills(), view).range_m, {8, 6});
   std::vector<MovedVertex> moved;
   grid.move(view, moved);
   for (std::size_t n = 0; n < moved.size(); ++n) {
@@ -92,7 +81,7 @@ TEST(ImageGrid, TheSameViewLeavesEachVertexInItsPlace) {
 TEST(ImageGrid, APolynomialOfARotationIsWithinItsResidualOfTheHomography) {
   std::mt19937 random(kSeed);
   const core::View from = view_at({3, 0, 22}, 4, -8);
-  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  const ImageGrid grid(from, image_of(hills(), from).range_m, {16, 12});
   std::vector<MovedVertex> moved;
   double worst_px = 0;
   for (int n = 0; n < 200; ++n) {
@@ -117,7 +106,7 @@ TEST(ImageGrid, APolynomialOfARotationIsWithinItsResidualOfTheHomography) {
 // On a plane the true motion is a homography too, so the grid is exact at its vertices, and polynomials nearly so.
 TEST(ImageGrid, TheGridFollowsReliefThatPolynomialsCannot) {
   const core::View from = view_at({3, 0, 22}, 4, -20);
-  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  const ImageGrid grid(from, image_of(hills(), from).range_m, {16, 12});
   std::vector<MovedVertex> moved;
   core::View to = view_at({6, 4, 22}, 4, -20);
   grid.move(to, moved);
@@ -128,7 +117,7 @@ TEST(ImageGrid, TheGridFollowsReliefThatPolynomialsCannot) {
 
 TEST(ImageGrid, NearerCellsComeLast) {
   const core::View from = view_at({3, 0, 22}, 4, -20);
-  const ImageGrid grid(from, image_of(ground(), from).range_m, {16, 12});
+  const ImageGrid grid(from, image_of(hills(), from).range_m, {16, 12});
   std::vector<MovedVertex> moved;
   grid.move(view_at({6, 4, 22}, 4, -20), moved);
   const std::vector<glm::ivec2> order = far_to_near(grid, moved);
@@ -150,7 +139,7 @@ TEST(ImageGrid, NearerCellsComeLast) {
 
 TEST(ImageGrid, BadInputIsRefused) {
   core::View view = view_at({0, 0, 20});
-  const core::Frame frame = image_of(ground(), view);
+  const core::Frame frame = image_of(hills(), view);
   EXPECT_THROW(ImageGrid(view, frame.range_m, {0, 4}), std::invalid_argument);
   EXPECT_THROW(ImageGrid(view, {}, {4, 4}), std::invalid_argument);
   const ImageGrid odd(view, frame.range_m, {3, 4});

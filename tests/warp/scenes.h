@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "vpe/core/frame.h"
@@ -95,6 +96,19 @@ inline core::View view_at(const glm::dvec3& position_m, double heading_deg = 0, 
   const mars::LocalFrame level{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // east, north, up
   view.camera.axes = mars::oriented_axes(level, heading_deg, pitch_deg, roll_deg);
   return view;
+}
+
+// Returns a floor with twelve hills, seen along +y from some 20 m above the origin.
+inline Scene hills() {
+  Scene scene;
+  scene.floors.push_back({{0, 0, 1}, 0});
+  for (int n = 0; n < 12; ++n)
+    scene.spheres.push_back({{-220.0 + 40 * n, 150.0 + 37 * (n % 5), -12}, 24.0 + 3 * (n % 4)});
+  return scene;
+}
+
+inline double random_in(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
 }
 
 }  // namespace vpe::test_support

@@ -1,5 +1,5 @@
-// Whole numbers of JSON. The library converts any number to a whole one, also one that does not fit: that is undefined for
-// 1e300, and 2.5 becomes 2.
+// Reads whole numbers of JSON. The library converts any number to a whole one, also one that does not fit: that is
+// undefined for 1e300, and 2.5 becomes 2.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -28,7 +28,7 @@ struct Certificate {
   double thinning_px = 0;
   // The bound of the middle, where rays are not thinned. Absent if all of the image has one density.
   std::optional<double> middle_bound_px;
-  // Of an image that was carried from another one (vpe/warp): part of shift_bound_px, by how much carried pixels may be off
+  // Describes an image of carried pixels (vpe/warp): part of shift_bound_px, by how much carried pixels may be off
   // because of that; and the shares of pixels that were carried, lie between carried ones, and were drawn. Absent where all
   // pixels were drawn.
   struct Carried {

@@ -32,7 +32,7 @@ struct StereoArguments {
   std::string differences;  // file of the differences from the second eye drawn in full; empty: none
 };
 
-// Which image of a pair is drawn. The middle is drawn for its ranges alone.
+// Says which image of a pair is drawn. The middle is drawn for its ranges alone.
 enum class Eye : std::uint8_t { kMiddle, kLeft, kRight };
 
 // Adds --stereo and --eye-base.

@@ -42,7 +42,7 @@ struct Preferences {
   double turn_speed = 1;        // factor on the speed of turning, for keys, gamepad and space mouse
   // lod.frame_ms while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
   double draw_budget_ms = 40;
-  // How the last image is moved to the newest pose until the next one is there.
+  // Says how the last image is moved to the newest pose until the next one is there.
   Warp warp = Warp::kGrid;
   double ui_scale = 0;                                 // size of letters and panels; 0: the display's own scale
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
