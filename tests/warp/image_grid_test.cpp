@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <random>
@@ -17,6 +19,7 @@ namespace {
 using test_support::hills;
 using test_support::image_of;
 using test_support::random_in;
+using test_support::Scene;
 using test_support::view_at;
 
 constexpr unsigned kSeed = 20261125;
@@ -113,6 +116,90 @@ TEST(ImageGrid, TheGridFollowsReliefThatPolynomialsCannot) {
   const auto motion = fit_motion(grid, moved);
   ASSERT_TRUE(motion);
   EXPECT_GT(motion->residual_px, 0.5);
+}
+
+// Returns where a triangle of moved vertices shows what the three places show.
+glm::dvec2 moved_within(const std::array<glm::dvec2, 3>& places, const std::array<glm::dvec2, 3>& moved,
+                        const glm::dvec2& place) {
+  const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
+  const glm::dvec2 ab = places[1] - places[0];
+  const glm::dvec2 ac = places[2] - places[0];
+  const glm::dvec2 p = place - places[0];
+  const double u = cross(p, ac) / cross(ab, ac);
+  const double v = cross(ab, p) / cross(ab, ac);
+  return moved[0] + u * (moved[1] - moved[0]) + v * (moved[2] - moved[0]);
+}
+
+// Returns where the grid, drawn as two triangles a cell, shows a place of its image.
+glm::dvec2 shown_at(const ImageGrid& grid, const std::vector<MovedVertex>& moved, const glm::dvec2& place,
+                    const glm::dvec2& cell_px) {
+  const glm::ivec2 cell = glm::ivec2(glm::floor(place / cell_px)) + 1;
+  const auto vertex = [&](int right, int down) {
+    return static_cast<std::size_t>(grid.index(cell.x + right, cell.y + down));
+  };
+  const std::array<std::size_t, 4> at{vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)};
+  const glm::dvec2 within = place / cell_px - glm::floor(place / cell_px);
+  const std::array<std::size_t, 3> corners =
+      within.x > within.y ? std::array{at[0], at[1], at[2]} : std::array{at[0], at[2], at[3]};
+  std::array<glm::dvec2, 3> places;
+  std::array<glm::dvec2, 3> to;
+  for (std::size_t n = 0; n < 3; ++n) {
+    places[n] = grid.places()[corners[n]];
+    to[n] = moved[corners[n]].xy_px;
+  }
+  return moved_within(places, to, place);
+}
+
+// A tenth of a second at 30 degrees and one height a second: 200 motions against the true images.
+TEST(ImageGrid, TwoHundredMotionsShowNearlyAllGroundWhereTheTrueImagesDo) {
+  std::mt19937 random(kSeed);
+  const Scene scene = hills();
+  const core::View from = view_at({3, 0, 22}, 4, -20);
+  const core::Frame frame = image_of(scene, from);
+  const glm::ivec2 cells(16, 12);
+  const ImageGrid grid(from, frame.range_m, cells);
+  const glm::dvec2 cell_px = glm::dvec2(160, 120) / glm::dvec2(cells);
+  std::vector<MovedVertex> moved;
+  std::int64_t grid_within = 0;
+  std::int64_t polynomial_within = 0;
+  std::int64_t still_within = 0;
+  std::int64_t seen = 0;
+  for (int n = 0; n < 200; ++n) {
+    glm::dvec3 step(random_in(random, -1, 1), random_in(random, -1, 1), random_in(random, -1, 1));
+    step *= 2.2 / std::max(glm::length(step), 1.0);
+    const core::View to = view_at(glm::dvec3(3, 0, 22) + step, 4 + random_in(random, -3, 3),
+                                  -20 + random_in(random, -3, 3), random_in(random, -3, 3));
+    const core::Frame truth = image_of(scene, to);
+    grid.move(to, moved);
+    const auto polynomial = fit_motion(grid, moved);
+    ASSERT_TRUE(polynomial);
+    for (int y = 0; y < 120; ++y) {
+      for (int x = 0; x < 160; ++x) {
+        const auto range_m = static_cast<double>(truth.range_m[static_cast<std::size_t>(160 * y + x)]);
+        if (std::isinf(range_m)) continue;
+        const glm::dvec2 pixel(x + 0.5, y + 0.5);
+        const glm::dvec3 point_m = to.camera.position_m + range_m * core::pixel_ray(to, pixel.x, pixel.y);
+        const glm::dvec2 place = core::project(from, point_m).xy;
+        if (!(place.x >= 0 && place.x < 160 && place.y >= 0 && place.y < 120)) continue;
+        // What the first image does not show is not asked of it.
+        const glm::dvec3 back = point_m - from.camera.position_m;
+        if (scene.cast_m(from.camera.position_m, glm::normalize(back)) < 0.999 * glm::length(back)) continue;
+        ++seen;
+        grid_within += glm::length(shown_at(grid, moved, place, cell_px) - pixel) <= 1 ? 1 : 0;
+        polynomial_within += glm::length(polynomial->at(place) - pixel) <= 1 ? 1 : 0;
+        still_within += glm::length(place - pixel) <= 1 ? 1 : 0;
+      }
+    }
+  }
+  const auto share = [&](std::int64_t within) {
+    return static_cast<double>(within) / static_cast<double>(seen);
+  };
+  std::printf("within 1 px of 160: grid %.4f, polynomials %.4f, the image itself %.4f of %lld\n",
+              share(grid_within), share(polynomial_within), share(still_within), static_cast<long long>(seen));
+  EXPECT_GT(seen, 1'000'000);
+  EXPECT_GT(share(grid_within), 0.97);
+  EXPECT_GT(share(grid_within), share(polynomial_within));
+  EXPECT_LT(share(still_within), 0.2);
 }
 
 TEST(ImageGrid, NearerCellsComeLast) {

@@ -124,7 +124,7 @@ TEST_F(MovedImageTest, FollowsTheCameraUntilTheNextImageIsThere) {
   const std::vector<Motion> motions{{"a turn", {20, 10, 900'000, 36, -57, 2}, 0.35},
                                     {"a step ahead", {20.3, 10.6, 850'000, 30, -60, 0}, 0.6}};
   for (const core::Backend backend : {core::Backend::kRay, core::Backend::kPolygon}) {
-    for (const explore::Warp warp : {explore::Warp::kGrid, explore::Warp::kPolynomial}) {
+    for (const explore::Warp warp : {explore::Warp::kGrid, explore::Warp::kPolynomial, explore::Warp::kCarry}) {
       for (const Motion& motion : motions) {
         open_with(warp, backend);
         const core::RgbImage before = window_->image();

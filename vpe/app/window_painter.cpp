@@ -113,6 +113,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   core::Frame& frame = drawn.result.frame;
   if (request.draw.want_rough_range && !frame.range_m.empty() && !drawn.result.certificate.is_below_ground)
     drawn.grid.emplace(draw_request.view, frame.range_m, window::kMovedCells);
+  if (request.keeps_ranges && drawn.grid) drawn.range_m = std::move(frame.range_m);
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};
   return drawn;

@@ -16,7 +16,7 @@ namespace vpe::core {
 struct WantedPixels {
   std::span<const std::uint8_t> is_wanted;  // not 0: yes
   // Range that is known to be clear: the pixel's ray meets nothing nearer, metres; 0 where nothing is known. Larger: fewer
-  // steps along the ray.
+  // steps along the ray. kSkyRange: the pixel shows sky, and is painted only.
   std::span<const float> clear_m;
 };
 

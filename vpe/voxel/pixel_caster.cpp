@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -47,6 +46,11 @@ int strip_width(const std::vector<int>& counts, int step, double least) {
   return width;
 }
 
+// Returns true if a pixel has to be cast: it is wanted, and is not known to show sky.
+bool is_cast(const core::WantedPixels& wanted, std::size_t n) {
+  return wanted.is_wanted[n] != 0 && wanted.clear_m[n] != core::kSkyRange;
+}
+
 }  // namespace
 
 PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted) {
@@ -69,8 +73,8 @@ PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted) 
   std::vector<int> rays(static_cast<std::size_t>(size.x));
   for (int y = top; y < size.y - bottom; ++y)
     for (int x = left; x < size.x - right; ++x)
-      if (wanted.is_wanted[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
-                           static_cast<std::size_t>(x)] != 0)
+      if (is_cast(wanted,
+                  static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x)))
         ++rays[static_cast<std::size_t>(x)];
   plan.rays = std::accumulate(rays.begin(), rays.end(), std::int64_t{0});
   const double pixels = static_cast<double>(size.x) * size.y;
@@ -95,7 +99,7 @@ ColumnWalk::Usage PixelCaster::cast_strip(const core::View& view, RangeOptions o
     for (int x = strip.x - part.x; x < strip.x - part.x + strip.width; ++x) {
       const std::size_t n =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width) + static_cast<std::size_t>(x);
-      if (wanted.is_wanted[n] != 0) range_m[n] = buffer_m_[n];
+      if (is_cast(wanted, n)) range_m[n] = buffer_m_[n];
     }
   }
   return usage;
@@ -104,6 +108,8 @@ ColumnWalk::Usage PixelCaster::cast_strip(const core::View& view, RangeOptions o
 ColumnWalk::Usage PixelCaster::cast(const core::View& view, const RangeOptions& options,
                                     const core::WantedPixels& wanted, base::ThreadPool& pool,
                                     std::span<float> range_m, TileFallbacks* fallbacks) {
+  for (std::size_t n = 0; n < range_m.size(); ++n)
+    if (wanted.is_wanted[n] != 0 && wanted.clear_m[n] == core::kSkyRange) range_m[n] = core::kSkyRange;
   const PixelPlan plan = plan_pixels(view, wanted);
   const lod::TileTree& tree = caster_.surface().planet().tree();
   ColumnWalk::Usage usage;
@@ -125,11 +131,10 @@ ColumnWalk::Usage PixelCaster::cast(const core::View& view, const RangeOptions& 
     for (int y = part.height - 1; y >= 0; --y) {
       const std::size_t n =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width) + static_cast<std::size_t>(x);
-      if (wanted.is_wanted[n] == 0 || in_strip(x, y)) continue;
+      if (!is_cast(wanted, n) || in_strip(x, y)) continue;
       const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
-      const auto clear_m = static_cast<double>(wanted.clear_m[n]);
       const std::optional<double> range =
-          rays.cast_from(camera_m, ray, std::isfinite(clear_m) ? kBegin * clear_m : 0);
+          rays.cast_from(camera_m, ray, kBegin * static_cast<double>(wanted.clear_m[n]));
       if (range)
         range_m[n] = static_cast<float>(*range);
       else

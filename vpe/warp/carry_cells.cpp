@@ -3,115 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <limits>
 
+#include "vpe/warp/block_kernel.h"
+#include "vpe/warp/block_plan.h"
 #include "vpe/warp/moved_pixels.h"
+#include "vpe/warp/triangles.h"
 
 namespace vpe::warp {
 
 namespace {
 
 constexpr int kBandRows = 16;
-constexpr int kBlockColumns = 64;
 // Neighbours of which one is sky: each pixel takes the nearer one, as long as they are hardly farther apart than in the
 // first image.
 constexpr float kWidestSkyline_px = 1.125F;
-constexpr float kFar_px = 1e6F;
-
-float cross(const glm::vec2& a, const glm::vec2& b) { return a.x * b.y - a.y * b.x; }
-
-float largest(const glm::vec2& v) { return std::max(std::abs(v.x), std::abs(v.y)); }
-
-// Names half of a cell between four pixels of the first image: twice the index of the cell's upper left pixel, and 1 for
-// the lower half.
-using Half = std::int32_t;
-constexpr Half kNothing = -1;
-constexpr Half kHidden = -2;  // ground that reaches behind the new camera; it hides and shows nothing
-
-// Holds what a pixel of the new image shows.
-struct Hit {
-  float inverse_depth = -1;
-  Half half = kNothing;
-};
-
-// A corner of a triangle in the new image.
-struct Corner {
-  glm::vec2 xy{0, 0};
-  float inverse_depth = 0;
-};
-
-// Returns the shares of the second and the third corner at a point.
-glm::vec2 shares_at(const glm::vec2& point, const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
-  const glm::vec2 ab = b - a;
-  const glm::vec2 ac = c - a;
-  const glm::vec2 p = point - a;
-  return glm::vec2(cross(p, ac), cross(ab, p)) / cross(ab, ac);
-}
-
-glm::vec2 centre_of(int x, int y) { return {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}; }
-
-// Draws triangles into a band of rows; the nearest one stays.
-class Band {
- public:
-  Band(int width, int first_row, int end_row)
-      : width_(width),
-        first_row_(first_row),
-        end_row_(end_row),
-        hits_(static_cast<std::size_t>(width) * static_cast<std::size_t>(end_row - first_row)) {}
-
-  // Draws a triangle with its corners clockwise in the image. One that turns its back is not drawn: a side that faces
-  // the camera lies before it.
-  void draw(const Corner& a, const Corner& b, const Corner& c, Half half) {
-    const int y0 = std::max(first_centre(std::min(std::min(a.xy.y, b.xy.y), c.xy.y)), first_row_);
-    const int y1 = std::min(last_centre(std::max(std::max(a.xy.y, b.xy.y), c.xy.y)), end_row_ - 1);
-    if (y0 > y1) return;
-    const int x0 = std::max(first_centre(std::min(std::min(a.xy.x, b.xy.x), c.xy.x)), 0);
-    const int x1 = std::min(last_centre(std::max(std::max(a.xy.x, b.xy.x), c.xy.x)), width_ - 1);
-    if (x0 > x1) return;
-    const glm::vec2 ab = b.xy - a.xy;
-    const glm::vec2 ac = c.xy - a.xy;
-    const float area = cross(ab, ac);
-    if (!(area > 0)) return;
-    const float per_area = 1 / area;
-    const float edge = kEdge_px * (largest(ab) + largest(ac)) * per_area;
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const glm::vec2 p = centre_of(x, y) - a.xy;
-        const float u = cross(p, ac) * per_area;
-        const float v = cross(ab, p) * per_area;
-        if (u < -edge || v < -edge || u + v > 1 + edge) continue;
-        const float depth = std::max(
-            a.inverse_depth + u * (b.inverse_depth - a.inverse_depth) + v * (c.inverse_depth - a.inverse_depth),
-            0.0F);
-        Hit& hit = hits_[static_cast<std::size_t>(y - first_row_) * static_cast<std::size_t>(width_) +
-                         static_cast<std::size_t>(x)];
-        if (depth > hit.inverse_depth) hit = {depth, half};
-      }
-    }
-  }
-
-  const Hit& at(int x, int y) const {
-    return hits_[static_cast<std::size_t>(y - first_row_) * static_cast<std::size_t>(width_) +
-                 static_cast<std::size_t>(x)];
-  }
-
- private:
-  // Triangles are wider by this, so that rounding leaves no crack between them.
-  static constexpr float kEdge_px = 1.0F / 256;
-  static int floor_of(float position) {
-    const float clamped = std::clamp(position, -kFar_px, kFar_px);
-    const auto cut = static_cast<int>(clamped);
-    return cut - (clamped < static_cast<float>(cut) ? 1 : 0);
-  }
-  static int first_centre(float position) { return floor_of(position + (0.5F - kEdge_px)); }
-  static int last_centre(float position) { return floor_of(position - (0.5F - kEdge_px)); }
-
-  int width_;
-  int first_row_;
-  int end_row_;
-  std::vector<Hit> hits_;
-};
 
 // Corners of a cell's halves: clockwise, the first one opposite to the diagonal.
 constexpr std::array<std::array<glm::ivec2, 3>, 2> kCorners{
@@ -121,39 +28,86 @@ constexpr std::array<std::array<glm::ivec2, 3>, 2> kCorners{
 class CellCarrier {
  public:
   CellCarrier(const core::View& from, const core::Frame& frame, const core::View& to,
-              const CarryOptions& options, base::ThreadPool& pool, MovedPixels& pixels)
-      : motion_(from, to), frame_(frame), options_(options), pixels_(pixels) {
-    pixels.move(motion_, frame, pool);
-    blocks_ = (pixels_.width - 1 + kBlockColumns - 1) / kBlockColumns;
-    const auto rows = static_cast<std::size_t>(pixels_.height - 1);
-    rows_.resize(static_cast<std::size_t>(blocks_) * rows);
-    pool.run(rows, [&](std::size_t y) { find_rows(static_cast<int>(y)); });
-  }
+              const CarryOptions& options, base::ThreadPool& pool, MovedPixels& pixels);
 
-  // Fills the rows [first, end) of an image, and returns the largest bound of what it adds.
+  // Fills the rows [first, end) of an image, and returns the largest bound of what its cells add.
   float fill(int first, int end, CarriedImage& into) const;
+  double flat_added_px() const { return plan_.added_px(); }
 
  private:
-  // Rows of the new image that a block of cells reaches.
-  struct Rows {
-    float low = 0;
+  // A block that is carried cell by cell.
+  struct RoughBlock {
+    glm::ivec2 first{};  // pixels of the first image
+    glm::ivec2 end{};    // cells end before
+    float low = 0;       // rows of the new image that it reaches
     float high = 0;
   };
   using Corners = std::array<std::size_t, 3>;
+  static const MovedPixels& taken(const Motion& motion, const core::Frame& frame, base::ThreadPool& pool,
+                                  MovedPixels& pixels) {
+    pixels.take(motion, frame, pool);
+    return pixels;
+  }
   Corners corners_of(Half half) const;
-  void find_rows(int y);
-  void draw_clipped(int x, int y, int half, Band& band) const;
-  float show(const Hit& hit, int x, int y, std::size_t out, CarriedImage& into) const;
-  void draw_block(int first_x, int end_x, int y, Band& band) const;
-  float clear_m(const Hit& hit, int x, int y) const;
+  void move_rough(MovedPixels& pixels, base::ThreadPool& pool);
+  void find_rows(RoughBlock& block) const;
+  void draw_clipped(int x, int y, int half, TriangleBand& band) const;
+  void draw_cells(const RoughBlock& block, TriangleBand& band) const;
+  Hits draw(int first, int end, int width) const;
+  float show(Half half, float hit_inverse_depth, int x, int y, std::size_t out, CarriedImage& into) const;
+  float clear_m(Half half, int x, int y) const;
 
   Motion motion_;
   const core::Frame& frame_;
   const CarryOptions& options_;
   const MovedPixels& pixels_;
-  int blocks_ = 0;
-  std::vector<Rows> rows_;
+  BlockPlan plan_;
+  std::vector<RoughBlock> rough_;
 };
+
+CellCarrier::CellCarrier(const core::View& from, const core::Frame& frame, const core::View& to,
+                         const CarryOptions& options, base::ThreadPool& pool, MovedPixels& pixels)
+    : motion_(from, to),
+      frame_(frame),
+      options_(options),
+      pixels_(taken(motion_, frame, pool, pixels)),
+      plan_(motion_, pixels_, core::drawn_size(to), options, pool) {
+  move_rough(pixels, pool);
+}
+
+void CellCarrier::move_rough(MovedPixels& pixels, base::ThreadPool& pool) {
+  const glm::ivec2 cells(pixels.width - 1, pixels.height - 1);
+  for (const BlockPlan::Row& row : plan_.rows())
+    for (const glm::ivec2& first : row.rough)
+      rough_.push_back({first, glm::min(first + BlockPlan::kSmall, cells), 0, 0});
+  // Pixels by small blocks of their own; those of a block's last cells belong to its neighbours.
+  const glm::ivec2 blocks =
+      (glm::ivec2(pixels.width, pixels.height) + BlockPlan::kSmall - 1) / BlockPlan::kSmall;
+  const auto index = [&](glm::ivec2 block) {
+    return static_cast<std::size_t>(block.y) * static_cast<std::size_t>(blocks.x) +
+           static_cast<std::size_t>(block.x);
+  };
+  std::vector<std::uint8_t> is_needed(static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y));
+  for (const RoughBlock& block : rough_)
+    for (const int y : {block.first.y, block.end.y})
+      for (const int x : {block.first.x, block.end.x})
+        is_needed[index(glm::ivec2(x, y) / BlockPlan::kSmall)] = 1;
+  pool.run(static_cast<std::size_t>(blocks.y), [&](std::size_t task) {
+    const int row = static_cast<int>(task);
+    const int end_y = std::min((row + 1) * BlockPlan::kSmall, pixels.height);
+    for (int column = 0; column < blocks.x; ++column) {
+      if (is_needed[index({column, row})] == 0) continue;
+      const int end_x = std::min((column + 1) * BlockPlan::kSmall, pixels.width);
+      for (int y = row * BlockPlan::kSmall; y < end_y; ++y)
+        pixels.move(motion_, column * BlockPlan::kSmall, end_x, y);
+    }
+  });
+  constexpr std::size_t kBlocks = 64;
+  pool.run((rough_.size() + kBlocks - 1) / kBlocks, [&](std::size_t task) {
+    for (std::size_t n = task * kBlocks; n < std::min((task + 1) * kBlocks, rough_.size()); ++n)
+      find_rows(rough_[n]);
+  });
+}
 
 CellCarrier::Corners CellCarrier::corners_of(Half half) const {
   const int cell = half / 2;
@@ -165,53 +119,52 @@ CellCarrier::Corners CellCarrier::corners_of(Half half) const {
   return at;
 }
 
-void CellCarrier::find_rows(int y) {
-  for (int block = 0; block < blocks_; ++block) {
-    const int begin = block * kBlockColumns;
-    const int end = std::min(begin + kBlockColumns, pixels_.width - 1);
-    Rows rows{kFar_px, -kFar_px};
-    bool is_whole = true;
-    for (int row = y; row <= y + 1; ++row) {
-      for (int x = begin; x <= end; ++x) {
-        const float at = pixels_.y_px[pixels_.index(x, row)];
-        is_whole = is_whole && at == at;
-        rows.low = std::min(rows.low, at);
-        rows.high = std::max(rows.high, at);
-      }
+void CellCarrier::find_rows(RoughBlock& block) const {
+  block.low = kFar_px;
+  block.high = -kFar_px;
+  bool is_whole = true;
+  for (int y = block.first.y; y <= block.end.y; ++y) {
+    for (int x = block.first.x; x <= block.end.x; ++x) {
+      const float at = pixels_.y_px[pixels_.index(x, y)];
+      is_whole = is_whole && at == at;
+      block.low = std::min(block.low, at);
+      block.high = std::max(block.high, at);
     }
-    if (!is_whole) rows = {-kFar_px, kFar_px};
-    rows_[static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(block)] =
-        rows;
   }
+  if (is_whole) return;
+  block.low = -kFar_px;
+  block.high = kFar_px;
 }
 
-void CellCarrier::draw_block(int first_x, int end_x, int y, Band& band) const {
+void CellCarrier::draw_cells(const RoughBlock& block, TriangleBand& band) const {
   const auto corner = [&](std::size_t n) {
     return Corner{{pixels_.x_px[n], pixels_.y_px[n]}, pixels_.inverse_depth[n]};
   };
-  std::size_t upper = pixels_.index(first_x, y);
-  std::size_t lower = pixels_.index(first_x, y + 1);
-  Corner a = corner(upper);
-  Corner c = corner(lower);
-  for (int x = first_x; x < end_x; ++x) {
-    const Half half = 2 * static_cast<Half>(upper);
-    const Corner b = corner(++upper);
-    const Corner d = corner(++lower);
-    const float sum = a.xy.x + b.xy.x + c.xy.x + d.xy.x;
-    if (sum == sum) {  // all are ahead
-      band.draw(a, b, c, half);
-      band.draw(d, c, b, half + 1);
-    } else {
-      draw_clipped(x, y, 0, band);
-      draw_clipped(x, y, 1, band);
+  for (int y = block.first.y; y < block.end.y; ++y) {
+    std::size_t upper = pixels_.index(block.first.x, y);
+    std::size_t lower = pixels_.index(block.first.x, y + 1);
+    Corner a = corner(upper);
+    Corner c = corner(lower);
+    for (int x = block.first.x; x < block.end.x; ++x) {
+      const Half half = 2 * static_cast<Half>(upper);
+      const Corner b = corner(++upper);
+      const Corner d = corner(++lower);
+      const float sum = a.xy.x + b.xy.x + c.xy.x + d.xy.x;
+      if (sum == sum) {  // all are ahead
+        band.draw(a, b, c, half);
+        band.draw(d, c, b, half + 1);
+      } else {
+        draw_clipped(x, y, 0, band);
+        draw_clipped(x, y, 1, band);
+      }
+      a = b;
+      c = d;
     }
-    a = b;
-    c = d;
   }
 }
 
 // Draws half of a cell that may reach behind the new camera: what lies ahead hides, and shows nothing.
-void CellCarrier::draw_clipped(int x, int y, int half, Band& band) const {
+void CellCarrier::draw_clipped(int x, int y, int half, TriangleBand& band) const {
   struct Point {
     glm::vec3 point{};
     float nearness = 0;
@@ -219,11 +172,9 @@ void CellCarrier::draw_clipped(int x, int y, int half, Band& band) const {
   std::array<Point, 3> in;
   for (std::size_t n = 0; n < 3; ++n) {
     const glm::ivec2& corner = kCorners[static_cast<std::size_t>(half)][n];
-    const float range = frame_.range_m[pixels_.index(x + corner.x, y + corner.y)];
-    if (!(range > 0)) return;
-    in[n].nearness = motion_.focal() * motion_.lengths().at(x + corner.x, y + corner.y) / range;
-    in[n].point = motion_.moved(motion_.ray(x + corner.x, y + corner.y), in[n].nearness);
+    in[n].nearness = motion_.focal() * pixels_.first_inverse_depth[pixels_.index(x + corner.x, y + corner.y)];
     if (!std::isfinite(in[n].nearness)) return;
+    in[n].point = motion_.moved(motion_.ray(x + corner.x, y + corner.y), in[n].nearness);
   }
   std::array<Corner, 4> out;
   std::size_t count = 0;
@@ -246,8 +197,9 @@ void CellCarrier::draw_clipped(int x, int y, int half, Band& band) const {
 std::uint8_t rounded(float value) { return static_cast<std::uint8_t>(value + 0.5F); }
 
 // Writes a pixel if it can be carried, and returns the bound of what that adds.
-float CellCarrier::show(const Hit& hit, int x, int y, std::size_t out, CarriedImage& into) const {
-  const Corners at = corners_of(hit.half);
+float CellCarrier::show(Half half, float hit_inverse_depth, int x, int y, std::size_t out,
+                        CarriedImage& into) const {
+  const Corners at = corners_of(half);
   const glm::vec2 a = pixels_.xy(at[0]);
   const glm::vec2 b = pixels_.xy(at[1]);
   const glm::vec2 c = pixels_.xy(at[2]);
@@ -272,7 +224,7 @@ float CellCarrier::show(const Hit& hit, int x, int y, std::size_t out, CarriedIm
                               : share[1] >= share[2] ? 1U
                                                      : 2U;
   const bool is_sky = is_sky_at(nearest) && (is_skyline || is_sky_at(0));
-  const float inverse_depth = is_skyline ? pixels_.inverse_depth[at[nearest]] : hit.inverse_depth;
+  const float inverse_depth = is_skyline ? pixels_.inverse_depth[at[nearest]] : hit_inverse_depth;
   into.origin[out] = is_sky                                              ? Origin::kSky
                      : largest(pixels_.xy(at[nearest]) - centre) <= 0.5F ? Origin::kCarried
                                                                          : Origin::kBetween;
@@ -295,36 +247,68 @@ float CellCarrier::show(const Hit& hit, int x, int y, std::size_t out, CarriedIm
 }
 
 // Returns a range before which the ray of a pixel meets nothing: that of the nearest corner of the triangle there.
-float CellCarrier::clear_m(const Hit& hit, int x, int y) const {
+float CellCarrier::clear_m(Half half, int x, int y) const {
   float nearest = 0;
-  for (const std::size_t n : corners_of(hit.half)) nearest = std::max(nearest, pixels_.inverse_depth[n]);
+  for (const std::size_t n : corners_of(half)) nearest = std::max(nearest, pixels_.inverse_depth[n]);
   return nearest > 0 ? motion_.new_lengths().at(x, y) / nearest : 0;
 }
 
-float CellCarrier::fill(int first, int end, CarriedImage& into) const {
-  Band band(into.width, first, end);
-  for (int y = 0; y + 1 < pixels_.height; ++y) {
-    for (int block = 0; block < blocks_; ++block) {
-      const Rows& rows = rows_[static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_) +
-                               static_cast<std::size_t>(block)];
-      if (rows.high < static_cast<float>(first) || rows.low > static_cast<float>(end)) continue;
-      const int begin = block * kBlockColumns;
-      draw_block(begin, std::min(begin + kBlockColumns, pixels_.width - 1), y, band);
-    }
+Hits CellCarrier::draw(int first, int end, int width) const {
+  Hits hits(width, first, end);
+  for (const BlockPlan::Row& row : plan_.rows()) {
+    if (row.end <= first || row.low >= end) continue;
+    for (const FlatBlock& block : row.flat)
+      if (block.end.y > first && block.low.y < end) draw_block(block, hits);
   }
+  TriangleBand band(hits, width);
+  for (const RoughBlock& block : rough_)
+    if (block.high >= static_cast<float>(first) && block.low <= static_cast<float>(end))
+      draw_cells(block, band);
+  return hits;
+}
+
+float CellCarrier::fill(int first, int end, CarriedImage& into) const {
+  const Hits hits = draw(first, end, into.width);
+  const auto width = static_cast<std::size_t>(into.width);
+  std::vector<float> length(width + kVectorPad);
+  std::vector<float> range_m(width + kVectorPad);
+  std::vector<Origin> origin(width + kVectorPad);
+  std::vector<base::Rgb> colour(width + kVectorPad);
+  const MixedImage image{pixels_.word.empty() ? nullptr : pixels_.word.data(), pixels_.width, pixels_.height,
+                         options_.filters};
+  const auto is_beside = [&](int x, int y) { return motion_.entry_m(x, y) > options_.nearest_m; };
   float added = 0;
-  const bool checks_entry = motion_.moves();
   for (int y = first; y < end; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * width;
+    motion_.new_lengths().row(y, std::span(length).first(width));
+    const bool has_cells = show_flat(hits, hits.index(0, y), into.width, image,
+                                     {length.data(), range_m.data(), origin.data(), colour.data()});
+    std::copy_n(range_m.begin(), width, into.range_m.begin() + static_cast<std::ptrdiff_t>(row));
+    std::copy_n(origin.begin(), width, into.origin.begin() + static_cast<std::ptrdiff_t>(row));
+    if (!into.colour.empty())
+      std::copy_n(colour.begin(), width, into.colour.begin() + static_cast<std::ptrdiff_t>(row));
+    // Where a ray begins in what the first image shows, so do those between: its air is convex.
+    int known = 0;
+    int end_known = into.width;
+    if (motion_.moves()) {
+      while (known < end_known && is_beside(known, y)) ++known;
+      while (end_known > known && is_beside(end_known - 1, y)) --end_known;
+    }
     for (int x = 0; x < into.width; ++x) {
-      const std::size_t out =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(into.width) + static_cast<std::size_t>(x);
-      into.origin[out] = Origin::kOpen;
-      const Hit& hit = band.at(x, y);
-      const bool is_known = hit.half >= 0 && !(checks_entry && motion_.entry_m(x, y) > options_.nearest_m);
-      if (is_known) added = std::max(added, show(hit, x, y, out, into));
-      if (into.origin[out] != Origin::kOpen) continue;
-      into.range_m[out] = is_known ? clear_m(hit, x, y) : 0;
-      if (!into.colour.empty()) into.colour[out] = {};
+      if (x == known && !has_cells) x = std::max(end_known, known);
+      if (x >= into.width) break;
+      const std::size_t out = row + static_cast<std::size_t>(x);
+      const bool is_known = x >= known && x < end_known;
+      const std::size_t hit = hits.index(x, y);
+      const Half half = hits.half[hit];
+      if (is_known && half >= 0) {
+        added = std::max(added, show(half, hits.inverse_depth[hit], x, y, out, into));
+        if (into.origin[out] == Origin::kOpen) into.range_m[out] = clear_m(half, x, y);
+      } else if (!is_known && into.origin[out] != Origin::kOpen) {
+        into.origin[out] = Origin::kOpen;
+        into.range_m[out] = 0;
+        if (!into.colour.empty()) into.colour[out] = {};
+      }
     }
   }
   return added;
@@ -341,6 +325,7 @@ void carry_cells(const core::View& from, const core::Frame& frame, const core::V
     const int first = static_cast<int>(n) * kBandRows;
     added[n] = carrier.fill(first, std::min(first + kBandRows, into.height), into);
   });
+  into.added_px = carrier.flat_added_px();
   for (const float px : added) into.added_px = std::max(into.added_px, static_cast<double>(px));
   into.added_px += kCarriedPosition_px;
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
+
+#include "vpe/warp/block_kernel.h"
 
 namespace vpe::warp {
 
@@ -20,19 +23,26 @@ Motion::Motion(const core::View& from, const core::View& to)
   const double focal = core::focal_px(from);
   const double cx = 0.5 * from.width + from.principal_offset_px.x - part_.x;
   const double cy = 0.5 * from.height + from.principal_offset_px.y - part_.y;
-  shift_m_ = in_new(to.camera.position_m - from.camera.position_m);
-  shift_ = shift_m_;
+  exact_.shift_m = in_new(to.camera.position_m - from.camera.position_m);
+  shift_ = exact_.shift_m;
   focal_ = static_cast<float>(focal);
   right_ = right;
   up_ = up;
-  first_ = (0.5 - cx) * right + (cy - 0.5) * up + focal * forward;
+  exact_.first = (0.5 - cx) * right + (cy - 0.5) * up + focal * forward;
+  exact_.by_column = right;
+  exact_.by_row = -up;
+  exact_.focal = focal;
+  first_ = exact_.first;
   const core::SubRectangle new_part = core::drawn_part(to);
-  new_focal_ = static_cast<float>(core::focal_px(to));
-  new_cx_ = static_cast<float>(0.5 * to.width + to.principal_offset_px.x - new_part.x);
-  new_cy_ = static_cast<float>(0.5 * to.height + to.principal_offset_px.y - new_part.y);
+  exact_.new_focal = core::focal_px(to);
+  exact_.new_centre_px = {0.5 * to.width + to.principal_offset_px.x - new_part.x,
+                          0.5 * to.height + to.principal_offset_px.y - new_part.y};
+  new_focal_ = static_cast<float>(exact_.new_focal);
+  new_cx_ = static_cast<float>(exact_.new_centre_px.x);
+  new_cy_ = static_cast<float>(exact_.new_centre_px.y);
   borders_ = {focal * right + cx * forward, -focal * right + (part_.width - cx) * forward,
               -focal * up + cy * forward, focal * up + (part_.height - cy) * forward};
-  for (std::size_t n = 0; n < borders_.size(); ++n) outside_m_[n] = -glm::dot(borders_[n], shift_m_);
+  for (std::size_t n = 0; n < borders_.size(); ++n) outside_m_[n] = -glm::dot(borders_[n], exact_.shift_m);
 }
 
 double Motion::entry_m(int x, int y) const {
@@ -49,36 +59,45 @@ double Motion::entry_m(int x, int y) const {
   return depth_m == 0 ? 0 : depth_m * glm::length(ray);
 }
 
-void MovedPixels::move(const Motion& motion, const core::Frame& frame, base::ThreadPool& pool) {
+void MovedPixels::take(const Motion& motion, const core::Frame& frame, base::ThreadPool& pool) {
   width = motion.width();
   height = motion.height();
-  for (std::vector<float>* member : {&x_px, &y_px, &parallax_x_px, &parallax_y_px, &inverse_depth})
-    member->resize(frame.range_m.size());
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  pool.run(static_cast<std::size_t>(height), [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    std::vector<float> length(static_cast<std::size_t>(width));
-    motion.lengths().row(y, length);
-    const std::size_t first = index(0, y);
-    const float focal = motion.focal();
-    for (int x = 0; x < width; ++x) {
-      const std::size_t n = first + static_cast<std::size_t>(x);
-      const float range = frame.range_m[n];
-      const glm::vec3 ray = motion.ray(x, y);
-      // The ray is `focal` deep; a point at the range divides it.
-      const float nearness = range > 0 ? focal * length[static_cast<std::size_t>(x)] / range : kNone;
-      const glm::vec3 point = motion.moved(ray, nearness);
-      const glm::vec2 xy = motion.place(point);
-      const glm::vec2 far = motion.place(ray);
-      const bool is_ahead = motion.is_ahead(point);
-      const bool has_parallax = nearness > 0 && motion.is_ahead(ray);
-      x_px[n] = is_ahead ? xy.x : kNone;
-      y_px[n] = is_ahead ? xy.y : kNone;
-      parallax_x_px[n] = has_parallax ? xy.x - far.x : 0;
-      parallax_y_px[n] = has_parallax ? xy.y - far.y : 0;
-      inverse_depth[n] = nearness / point.z;
+  const std::size_t count = frame.range_m.size() + kPad;
+  for (std::vector<float>* member :
+       {&first_inverse_depth, &x_px, &y_px, &parallax_x_px, &parallax_y_px, &inverse_depth})
+    member->resize(count);
+  word.resize(frame.colour.empty() ? 0 : count);
+  constexpr int kRows = 16;
+  pool.run(static_cast<std::size_t>((height + kRows - 1) / kRows), [&](std::size_t task) {
+    const int first = static_cast<int>(task) * kRows;
+    const auto row_size = static_cast<std::size_t>(width);
+    for (int y = first; y < std::min(first + kRows, height); ++y) {
+      const std::span<float> row(&first_inverse_depth[index(0, y)], row_size);
+      motion.lengths().row(y, row);
+      invert({&frame.range_m[index(0, y)], row_size}, row);
+      if (!word.empty()) widen({&frame.colour[index(0, y)], row_size}, &word[index(0, y)]);
     }
   });
+}
+
+void MovedPixels::move(const Motion& motion, int x, int end_x, int y) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  for (; x < end_x; ++x) {
+    const std::size_t n = index(x, y);
+    const glm::vec3 ray = motion.ray(x, y);
+    // The ray is `focal` deep; a point at the range divides it.
+    const float nearness = motion.focal() * first_inverse_depth[n];
+    const glm::vec3 point = motion.moved(ray, nearness);
+    const glm::vec2 xy = motion.place(point);
+    const glm::vec2 far = motion.place(ray);
+    const bool is_ahead = motion.is_ahead(point);
+    const bool has_parallax = nearness > 0 && motion.is_ahead(ray);
+    x_px[n] = is_ahead ? xy.x : kNone;
+    y_px[n] = is_ahead ? xy.y : kNone;
+    parallax_x_px[n] = has_parallax ? xy.x - far.x : 0;
+    parallax_y_px[n] = has_parallax ? xy.y - far.y : 0;
+    inverse_depth[n] = nearness / point.z;
+  }
 }
 
 }  // namespace vpe::warp

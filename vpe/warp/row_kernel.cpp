@@ -12,6 +12,8 @@
 // clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
+
+#include "vpe/warp/colour_words-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -75,46 +77,13 @@ HWY_INLINE void find_neighbours(const Scan& scan, RowBuffers& row) {
     while (end > first[i]) left[--end] = i;
 }
 
-// Mixes colours of three bytes in 256ths: within half a step of 8 bits.
-HWY_INLINE WordVec mix(WordVec a, WordVec b, WordVec share_256) {
-  const Words d;
-  const WordVec rest = hn::Sub(hn::Set(d, 256), share_256);
-  const WordVec even = hn::Set(d, 0x00FF00FF);
-  const auto blend = [&](WordVec x, WordVec y) HWY_ATTR {
-    const WordVec sum = hn::Add(hn::Mul(x, rest), hn::Mul(y, share_256));
-    return hn::And(hn::ShiftRight<8>(hn::Add(sum, hn::Set(d, 0x00800080))), even);
-  };
-  const WordVec red_blue = blend(hn::And(a, even), hn::And(b, even));
-  const WordVec green =
-      blend(hn::And(hn::ShiftRight<8>(a), hn::Set(d, 0xFF)), hn::And(hn::ShiftRight<8>(b), hn::Set(d, 0xFF)));
-  return hn::Or(red_blue, hn::ShiftLeft<8>(green));
-}
-
 // Makes a word of each colour, so that they can be gathered.
 HWY_INLINE void widen_colours(const Scan& scan, RowBuffers& row) {
-  static_assert(sizeof(base::Rgb) == 3);
   const Words d;
-  const hn::Rebind<std::uint8_t, Words> d8;
   for (int i = 0; i < scan.count; i += static_cast<int>(hn::Lanes(d))) {
-    hn::Vec<decltype(d8)> red;
-    hn::Vec<decltype(d8)> green;
-    hn::Vec<decltype(d8)> blue;
-    hn::LoadInterleaved3(d8, &row.colour[static_cast<std::size_t>(i)].r, red, green, blue);
-    const WordVec word = hn::Or(hn::PromoteTo(d, red), hn::Or(hn::ShiftLeft<8>(hn::PromoteTo(d, green)),
-                                                              hn::ShiftLeft<16>(hn::PromoteTo(d, blue))));
-    hn::StoreU(word, d, &row.word[static_cast<std::size_t>(i)]);
+    const auto at = static_cast<std::size_t>(i);
+    hn::StoreU(load_words(d, &row.colour[at]), d, &row.word[at]);
   }
-}
-
-HWY_INLINE void store_colours(WordVec words, base::Rgb* out) {
-  const Words d;
-  const Ints di;
-  const hn::Rebind<std::uint8_t, Words> d8;
-  const WordVec byte = hn::Set(d, 0xFF);
-  const auto narrow = [&](WordVec word)
-                          HWY_ATTR { return hn::DemoteTo(d8, hn::BitCast(di, hn::And(word, byte))); };
-  hn::StoreInterleaved3(narrow(words), narrow(hn::ShiftRight<8>(words)), narrow(hn::ShiftRight<16>(words)), d8,
-                        &out->r);
 }
 
 HWY_INLINE float fill(const Scan& scan, RowBuffers& row, bool has_colour) {
@@ -179,8 +148,8 @@ HWY_INLINE float fill(const Scan& scan, RowBuffers& row, bool has_colour) {
     const WordVec other = hn::GatherIndex(dw, row.word.data() + 1, left);
     // Any share where nothing is carried.
     const FloatVec used = hn::IfThenElseZero(is_carried, share_256);
-    const WordVec colour = mix(own, other, hn::BitCast(dw, hn::ConvertTo(di, used)));
-    store_colours(hn::IfThenElseZero(hn::RebindMask(dw, is_carried), colour), &row.new_colour[at]);
+    const WordVec colour = mix(dw, own, other, hn::BitCast(dw, hn::ConvertTo(di, used)));
+    store_words(dw, hn::IfThenElseZero(hn::RebindMask(dw, is_carried), colour), &row.new_colour[at]);
   }
   return hn::GetLane(hn::MaxOfLanes(d, added));
 }

@@ -42,6 +42,7 @@ void ExploreWindow::request_image() {
   request.draw.keeps_levels = true;
   request.draw.paging.wait = false;
   request.draw.want_rough_range = setup_.preferences.warp != explore::Warp::kOff && !chosen.stereo;
+  request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry;
   request.draw.paging.upcoming = foreseen_views(next->view);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
@@ -105,6 +106,9 @@ bool ExploreWindow::take_image() {
   ++images_;
   last_image_ = std::move(drawn->image);
   drawn_ = std::move(*drawn);
+  moved_image_.forget();
+  if (!drawn_->range_m.empty())
+    moved_image_.take({last_image_.width, last_image_.height, last_image_.pixels, std::move(drawn_->range_m)});
   image_times_s_.push_back(drawn_->seconds);
   if (image_times_s_.size() > 20) image_times_s_.pop_front();
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
@@ -191,6 +195,8 @@ void ExploreWindow::draw_view() {
       drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
   if (lags()) {
     moved_image_.draw(list, view_texture_.id(), area, *drawn_->grid, session_.view(), setup_.preferences.warp);
+    if (setup_.preferences.warp == explore::Warp::kCarry)
+      moved_image_.draw_carried(list, area, drawn_->request.draw.view, session_.view(), session_.height_m());
   } else {
     list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
   }

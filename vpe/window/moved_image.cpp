@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <span>
 
 namespace vpe::window {
@@ -46,6 +47,33 @@ void MovedImage::draw(ImDrawList& list, void* texture, const ViewArea& area, con
   }
   list.PopTextureID();
   list.PopClipRect();
+}
+
+void MovedImage::draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from, core::View to,
+                              double height_m) {
+  if (image_.range_m.empty()) return;
+  // The ground may be nearer beside the image than below the camera; what that hides is seen until the next image.
+  constexpr double kOfHeight = 0.5;
+  to.width = from.width;
+  to.height = from.height;
+  if (!warp::check_carry(from, to).empty()) return;
+  if (!pool_) pool_.emplace(0);
+  warp::CarryOptions options;
+  options.nearest_m = kOfHeight * std::max(height_m, 0.0);
+  carrier_.carry(from, image_, to, options, *pool_, carried_);
+  rgba_.resize(4 * carried_.colour.size());
+  for (std::size_t n = 0; n < carried_.colour.size(); ++n) {
+    const base::Rgb& colour = carried_.colour[n];
+    const std::uint8_t opacity = carried_.origin[n] == warp::Origin::kOpen ? 0 : 255;
+    std::uint8_t* const out = &rgba_[4 * n];
+    out[0] = colour.r;
+    out[1] = colour.g;
+    out[2] = colour.b;
+    out[3] = opacity;
+  }
+  if (!texture_) texture_.emplace();
+  texture_->upload_rgba(rgba_, carried_.width, carried_.height);
+  list.AddImage(texture_->id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
 }
 
 }  // namespace vpe::window

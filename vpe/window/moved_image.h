@@ -1,10 +1,16 @@
 // Draws the last image of the view as the newest camera sees it, until the next image is there.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "vpe/core/frame.h"
 #include "vpe/explore/files/preferences.h"
+#include "vpe/warp/carry.h"
 #include "vpe/warp/image_grid.h"
+#include "vpe/window/ui/display.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
 struct ImDrawList;
@@ -25,8 +31,23 @@ class MovedImage {
   void draw(ImDrawList& list, void* texture, const ViewArea& area, const warp::ImageGrid& grid,
             const core::View& to, explore::Warp warp);
 
+  // Takes an image with its ranges for draw_carried(), or none.
+  void take(core::Frame image) { image_ = std::move(image); }
+  void forget() { image_ = {}; }
+  // Adds the taken image, drawn as `from` sees it, pixel by pixel as `to` sees its ground; pixels of which nothing is known
+  // are transparent, so that the grid shows there. `height_m` of the camera above the ground. Draws nothing where no image
+  // was taken.
+  void draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from, core::View to,
+                    double height_m);
+
  private:
   std::vector<warp::MovedVertex> moved_;
+  core::Frame image_;
+  std::optional<base::ThreadPool> pool_;  // once it is needed
+  warp::Carrier carrier_;
+  warp::CarriedImage carried_;
+  std::vector<std::uint8_t> rgba_;
+  std::optional<Texture> texture_;
 };
 
 }  // namespace vpe::window

@@ -163,6 +163,7 @@ int main(int argc, char** argv) {
     if (key == "--warp")
       warp = value == "off"          ? explore::Warp::kOff
              : value == "polynomial" ? explore::Warp::kPolynomial
+             : value == "carry"      ? explore::Warp::kCarry
                                      : explore::Warp::kGrid;
     if (key == "--backend")
       drawn_by = value == "ray"       ? core::DrawnBy::kRay

@@ -30,6 +30,15 @@ void visit(Figures& f, const Field& field) {
   field("tiles_substituted", f.certificate.tiles_substituted);
 }
 
+// Of frames with carried pixels only.
+template <class Carried, class Field>
+void visit_carried(Carried& carried, const Field& field) {
+  field("carrying_px", carried.added_px);
+  field("carried_share", carried.carried_share);
+  field("between_share", carried.between_share);
+  field("drawn_share", carried.drawn_share);
+}
+
 void read(const json& value, double& to) { to = value.is_null() ? kNotKnown : value.get<double>(); }
 void read(const json& value, int& to) { to = base::json_integer<int>(value); }
 void read(const json& value, std::int64_t& to) { to = base::json_integer<std::int64_t>(value); }
@@ -43,6 +52,8 @@ void read(const json& value, std::vector<int>& to) {
 json to_json(const FrameFigures& figures) {
   json out = json::object();
   visit(figures, [&](const char* name, const auto& value) { out[name] = value; });
+  if (const auto& carried = figures.certificate.carried)
+    visit_carried(*carried, [&](const char* name, double value) { out[name] = value; });
   return out;
 }
 
@@ -50,6 +61,9 @@ std::optional<FrameFigures> figures_from(const json& from) {
   FrameFigures figures;
   try {
     visit(figures, [&](const char* name, auto& value) { read(from.at(name), value); });
+    if (from.contains("carrying_px"))
+      visit_carried(figures.certificate.carried.emplace(),
+                    [&](const char* name, double& value) { read(from.at(name), value); });
   } catch (const json::exception&) {
     return std::nullopt;
   }

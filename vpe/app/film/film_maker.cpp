@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kWaitingFrames = 3;
 constexpr const char* kIncomplete = "-incomplete";
+// Single rays are slower than whole images, so that a frame which is carried to a smaller share takes longer.
+constexpr double kMostDrawnShare = 0.25;
 
 bool all_done(std::span<const FilmFrame> frames) {
   return std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_done(); });
@@ -158,20 +160,48 @@ void FilmMaker::make_group(std::size_t begin, std::size_t end) {
 
 core::Renderer& FilmMaker::renderer_for(core::Backend backend) {
   if (renderer_ && backend_ == backend) return *renderer_;
-  pair_.reset();
+  drawer_.reset();
   renderer_.reset();
   renderer_ = makers_.renderer(backend);
   backend_ = backend;
   return *renderer_;
 }
 
-PairDrawer& FilmMaker::pair_for(double gap_px, core::Renderer& renderer) {
-  if (!pair_ || pair_gap_px_ != gap_px) {
-    pair_.reset();
-    pair_ = makers_.pair(renderer, gap_px);
-    pair_gap_px_ = gap_px;
+CarriedDrawer& FilmMaker::drawer_for(const PlannedFrame& planned, core::Renderer& renderer) {
+  CarriedDrawerOptions options;
+  if (planned.carried_gap_px) options.gap_px = *planned.carried_gap_px;
+  if (planned.reuse) {
+    options.most_added_px = planned.reuse->most_added_px;
+    options.most_drawn_share = kMostDrawnShare;
+    options.repaints_sky = true;
   }
-  return *pair_;
+  const std::pair px(options.gap_px, options.most_added_px);
+  if (!drawer_ || drawer_px_ != px) {
+    drawer_.reset();
+    drawer_ = makers_.carried(renderer, options);
+    drawer_px_ = px;
+    key_.reset();
+  }
+  return *drawer_;
+}
+
+core::DrawResult FilmMaker::draw_reusing(const PlannedFrame& planned, const core::DrawRequest& request,
+                                         core::Renderer& renderer) {
+  CarriedDrawer& drawer = drawer_for(planned, renderer);
+  const std::int64_t key = planned.reuse->key;
+  if (key_ != key) {
+    key_.reset();
+    core::DrawRequest first = plan_.at(key).request;
+    first.paging = request.paging;
+    core::DrawResult drawn = drawer.draw_first(first);
+    key_missing_ = drawn.missing;
+    if (key != planned.index) keep_failures(drawn);
+    key_ = key;
+    if (key == planned.index) return drawn;
+  }
+  core::DrawResult result = drawer.draw_carried(request);
+  result.missing.insert(result.missing.end(), key_missing_.begin(), key_missing_.end());
+  return result;
 }
 
 core::DrawResult FilmMaker::keep_failures(core::DrawResult result) {
@@ -188,17 +218,18 @@ std::vector<FilmMaker::DrawnEye> FilmMaker::draw_eyes(std::size_t n, const Plann
     const PlannedFrame next = plan_.at(frames_[n + 1].index);
     if (next.backend == planned.backend) paging.upcoming = {next.request.view};
     // The renderer may begin the next request at once; between both eyes that is another one.
-    if (next.backend == planned.backend && !next.stereo && !planned.stereo)
+    if (next.backend == planned.backend && !next.stereo && !planned.stereo && !next.reuse)
       paging.next = std::make_shared<const core::DrawRequest>(next.request);
   }
   std::vector<DrawnEye> eyes;
-  PairDrawer* const pair = planned.carried_gap_px ? &pair_for(*planned.carried_gap_px, renderer) : nullptr;
+  CarriedDrawer* const pair = planned.carried_gap_px ? &drawer_for(planned, renderer) : nullptr;
   for (core::DrawRequest& request : planned.requests()) {
     request.paging = paging;
     DrawnEye eye{request, {}, {}};
-    eye.result = keep_failures(pair == nullptr ? renderer.draw(request)
-                               : eyes.empty()  ? pair->first(request)
-                                               : pair->second(request));
+    eye.result = keep_failures(planned.reuse     ? draw_reusing(planned, request, renderer)
+                               : pair == nullptr ? renderer.draw(request)
+                               : eyes.empty()    ? pair->draw_first(request)
+                                                 : pair->draw_carried(request));
     if (const auto finer = contour_request(request, eye.result))
       eye.contours = keep_failures(renderer.draw(*finer));
     eyes.push_back(std::move(eye));

@@ -1,11 +1,13 @@
 // Makes the missing frames of a film.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scripts/log.h"
@@ -13,9 +15,9 @@
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/film/film_target.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/pair_drawer.h"
 
 namespace vpe::app {
 
@@ -36,8 +38,9 @@ class FilmMaker {
  public:
   struct Makers {
     std::function<std::unique_ptr<core::Renderer>(core::Backend)> renderer;
-    // Makes what carries second eyes; may be empty if the plan has none.
-    std::function<std::unique_ptr<PairDrawer>(core::Renderer&, double gap_px)> pair;
+    // Makes what carries second eyes and frames; may be empty if the plan has none. Memory and threads of the options are
+    // its own.
+    std::function<std::unique_ptr<CarriedDrawer>(core::Renderer&, CarriedDrawerOptions)> carried;
   };
 
   // `first` is the number of frames[0] in the film. A renderer is made when a frame has to be drawn by it. There is
@@ -60,7 +63,9 @@ class FilmMaker {
   core::Renderer& renderer_for(core::Backend backend);
   std::vector<DrawnEye> draw_eyes(std::size_t n, const PlannedFrame& planned, core::Renderer& renderer);
   core::DrawResult keep_failures(core::DrawResult result);
-  PairDrawer& pair_for(double gap_px, core::Renderer& renderer);
+  CarriedDrawer& drawer_for(const PlannedFrame& planned, core::Renderer& renderer);
+  core::DrawResult draw_reusing(const PlannedFrame& planned, const core::DrawRequest& request,
+                                core::Renderer& renderer);
   core::Frame finish(std::vector<DrawnEye>& eyes, const std::optional<core::StereoPair>& stereo, double time_s);
   void make_group(std::size_t begin, std::size_t end);
   bool draw(std::size_t n);
@@ -76,8 +81,10 @@ class FilmMaker {
   Makers makers_;
   FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;
-  std::unique_ptr<PairDrawer> pair_;  // of renderer_, and of a gap
-  double pair_gap_px_ = 0;
+  std::unique_ptr<CarriedDrawer> drawer_;  // of renderer_, for this gap and bound
+  std::pair<double, double> drawer_px_;
+  std::optional<std::int64_t> key_;                  // frame that is the drawer's first image
+  std::vector<core::MissingTile> key_missing_;       // of it
   core::Backend backend_ = core::Backend::kPolygon;  // of renderer_
   bool is_prepared_ = false;                         // the target
   FilmReports* reports_ = nullptr;                   // during run()

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "vpe/app/cli/program.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/pair_drawer.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/base/number.h"
 #include "vpe/overlay/overlay.h"
@@ -91,8 +91,9 @@ std::optional<core::StereoPair> FilmPlan::stereo_of(const scripts::FlightState& 
   return core::StereoPair{*view.eyes->layout, base_m, view.convergence_m.value_or(0)};
 }
 
-PlannedFrame FilmPlan::at(std::int64_t frame) const {
+PlannedFrame FilmPlan::alone(std::int64_t frame) const {
   PlannedFrame out;
+  out.index = frame;
   out.time_s = scripts::frame_time(view_.fps, frame);
   out.state = path_.at(out.time_s);
   const scripts::ViewState& view = out.state.view;
@@ -125,6 +126,37 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   return out;
 }
 
+std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planned) const {
+  const auto can_be_carried = [](const PlannedFrame& one) {
+    return !one.stereo && one.request.settings.haze_visibility_m == 0 && why_not_carried(one.request).empty();
+  };
+  if (!views_.reuse_px || !can_be_carried(planned)) return std::nullopt;
+  const PlannedFrame::Reuse reuse{planned.index - planned.index % kKeyFrames, *views_.reuse_px};
+  if (reuse.key == planned.index) return reuse;
+  const PlannedFrame key = alone(reuse.key);
+  const core::DrawRequest& a = key.request;
+  const core::DrawRequest& b = planned.request;
+  const bool is_alike = can_be_carried(key) && key.backend == planned.backend && a.settings == b.settings &&
+                        a.sun == b.sun && a.interest == b.interest && a.want_range == b.want_range;
+  return is_alike ? std::optional(reuse) : std::nullopt;
+}
+
+PlannedFrame FilmPlan::at(std::int64_t frame) const {
+  PlannedFrame planned = alone(frame);
+  planned.reuse = reuse_of(planned);
+  return planned;
+}
+
+std::string FilmPlan::fingerprint(const PlannedFrame& planned) const {
+  RenderBasis basis = basis_;
+  basis.backend = planned.backend;
+  FingerprintOrigin origin{planned.stereo, planned.carried_gap_px, {}};
+  if (planned.reuse)
+    origin.reuse = {fingerprint_of(basis, alone(planned.reuse->key).request, planned.settings),
+                    planned.reuse->most_added_px};
+  return fingerprint_of(basis, planned.request, planned.settings, planned.time_s, origin);
+}
+
 std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t begin, std::int64_t end) const {
   std::vector<FilmFrame> out;
   out.reserve(static_cast<std::size_t>(end - begin));
@@ -133,10 +165,7 @@ std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t be
     FilmFrame frame;
     frame.index = range.frame(n);
     frame.time_s = planned.time_s;
-    RenderBasis basis = basis_;
-    basis.backend = planned.backend;
-    frame.fingerprint = fingerprint_of(basis, planned.request, planned.settings, planned.time_s,
-                                       {planned.stereo, planned.carried_gap_px});
+    frame.fingerprint = fingerprint(planned);
     out.push_back(std::move(frame));
   }
   return out;

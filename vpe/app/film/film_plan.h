@@ -37,6 +37,7 @@ FrameRange parse_frames(const std::string& text, std::int64_t count);
 
 // One frame, ready to be drawn.
 struct PlannedFrame {
+  std::int64_t index = 0;  // in the flight
   double time_s = 0;
   scripts::FlightState state;
   core::Settings settings;
@@ -45,14 +46,25 @@ struct PlannedFrame {
   core::Backend backend = core::Backend::kPolygon;
   bool names_backend = false;  // the flight names it
   std::optional<core::StereoPair> stereo;
-  // Widest gap of the second eye, which is carried from the first (PairOptions::gap_px). Absent: all is drawn in full.
+  // Widest gap of the second eye, which is carried from the first (CarriedDrawerOptions::gap_px). Absent: all is drawn in
+  // full.
   std::optional<double> carried_gap_px;
+  // Describes a frame that takes pixels of a key frame: itself, or an earlier one.
+  struct Reuse {
+    std::int64_t key = 0;      // index in the flight
+    double most_added_px = 0;  // CarriedDrawerOptions::most_added_px
+  };
+  std::optional<Reuse> reuse;  // absent: drawn in full, and no frame takes its pixels
 
   // Returns the requests to draw: one, or those of the left and the right eye.
   std::vector<core::DrawRequest> requests() const;
   // Returns the view as a log records it: what the flight says, with the backend and the eye base that were used.
   scripts::ViewState drawn_view() const;
 };
+
+// Every frame of a flight whose index is a multiple of this is a key frame, so that the frames of a film do not depend on
+// which of them a run makes. Larger: fewer frames are drawn in full, and more is left of the others.
+inline constexpr std::int64_t kKeyFrames = 8;
 
 // Says how a plan follows the views of its flight.
 struct ViewOptions {
@@ -62,6 +74,9 @@ struct ViewOptions {
   scripts::TerrainHeight terrain_height_m;
   // PlannedFrame::carried_gap_px of pairs that can be carried. Absent: all pairs are drawn in full.
   std::optional<double> carried_gap_px;
+  // PlannedFrame::Reuse::most_added_px of frames that can take pixels of a key frame. Larger: fewer pixels are drawn, and
+  // their positions are less exact. Absent: all frames are drawn in full.
+  std::optional<double> reuse_px;
 };
 
 // The ends of the palette where a film shows a value and takes them from its views (film_palette.h).
@@ -91,13 +106,19 @@ class FilmPlan {
   void take_palettes(std::vector<FilmPalette> palettes) { palettes_ = std::move(palettes); }
   const std::vector<FilmPalette>& palettes() const { return palettes_; }
 
-  // Returns a frame by its index in the flight.
+  // Returns a frame by its index in the flight. One that follows a key frame takes pixels of it if they differ in nothing
+  // but their views, both are drawn by rays or by triangles that rays can continue, there is no haze, and neither is a
+  // pair of eyes.
   PlannedFrame at(std::int64_t frame) const;
 
   // Returns the frames number begin to end - 1 of a range, all in state kMissing.
   std::vector<FilmFrame> frames(const FrameRange& range, std::int64_t begin, std::int64_t end) const;
 
  private:
+  // Returns a frame without `reuse`.
+  PlannedFrame alone(std::int64_t frame) const;
+  std::optional<PlannedFrame::Reuse> reuse_of(const PlannedFrame& planned) const;
+  std::string fingerprint(const PlannedFrame& planned) const;
   std::optional<core::StereoPair> stereo_of(const scripts::FlightState& state, double time_s) const;
 
   RenderBasis basis_;

@@ -52,10 +52,11 @@ std::string list_text(std::span<const std::string> words) {
   return text;
 }
 
-// Largest bound and mean number of triangles over the frames that are done.
+// Largest bound, mean number of triangles and mean share of carried pixels over the frames that are done.
 struct FilmFigures {
   double shift_bound_px = 0;
   std::int64_t mean_triangles = 0;
+  double carried_share = 0;
 };
 
 FilmFigures figures_of(std::span<const FilmFrame> frames) {
@@ -66,8 +67,11 @@ FilmFigures figures_of(std::span<const FilmFrame> frames) {
     ++done;
     out.shift_bound_px = std::max(out.shift_bound_px, f.figures.certificate.shift_bound_px);
     out.mean_triangles += f.figures.stats.triangles;
+    if (const auto& carried = f.figures.certificate.carried) out.carried_share += 1 - carried->drawn_share;
   }
-  out.mean_triangles /= std::max<std::int64_t>(done, 1);
+  done = std::max<std::int64_t>(done, 1);
+  out.mean_triangles /= done;
+  out.carried_share /= static_cast<double>(done);
   return out;
 }
 
@@ -199,6 +203,7 @@ json summary_json(std::span<const FilmFrame> frames, double seconds) {
           {"failed", n.failed},
           {"seconds", seconds},
           {"shift_bound_px", figures.shift_bound_px},
+          {"carried_share", figures.carried_share},
           {"mean_triangles", figures.mean_triangles}};
 }
 
@@ -215,7 +220,11 @@ std::string summary_text(std::span<const FilmFrame> frames, double seconds) {
     std::snprintf(end.data(), end.size(), ", %.1f frames/s", static_cast<double>(n.made) / seconds);
     text += end.data();
   }
-  std::snprintf(end.data(), end.size(), ", geometry within %.2f px", figures_of(frames).shift_bound_px);
+  const FilmFigures figures = figures_of(frames);
+  std::snprintf(end.data(), end.size(), ", geometry within %.2f px", figures.shift_bound_px);
+  text += end.data();
+  if (figures.carried_share == 0) return text;
+  std::snprintf(end.data(), end.size(), ", %.0f %% of pixels carried", 100 * figures.carried_share);
   return text + end.data();
 }
 

@@ -68,10 +68,12 @@ std::optional<std::int64_t> parts_begun(const std::filesystem::path& folder, con
 std::string missing_text(const FilmKind& kind, std::span<const FilmFrame> frames,
                          std::optional<std::int64_t> parts);
 
-// Returns the keys frames, made, kept, failed, seconds, shift_bound_px (the largest) and mean_triangles.
+// Returns the keys frames, made, kept, failed, seconds, shift_bound_px (the largest), carried_share (the mean) and
+// mean_triangles.
 nlohmann::json summary_json(std::span<const FilmFrame> frames, double seconds);
 
-// Returns text such as "20 frames (12 made, 8 kept), 31.2 frames/s, geometry within 0.98 px".
+// Returns text such as "20 frames (12 made, 8 kept), 31.2 frames/s, geometry within 0.98 px". Where pixels are
+// carried it ends in their share.
 std::string summary_text(std::span<const FilmFrame> frames, double seconds);
 
 }  // namespace vpe::app

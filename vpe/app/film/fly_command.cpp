@@ -19,8 +19,8 @@
 #include "vpe/app/film/film_palette.h"
 #include "vpe/app/film/film_session.h"
 #include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/pair_drawer.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
@@ -33,6 +33,8 @@ namespace vpe::app {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr double kMostReuse_px = 16;
 
 struct FlyArguments {
   std::string flight;
@@ -47,6 +49,7 @@ struct FlyArguments {
   bool allow_underground = false;
   bool join = false;
   StereoMethod stereo;
+  double reuse_px = 0;  // 0: every frame is drawn in full
   RenderOptions image;
 };
 
@@ -77,13 +80,14 @@ void require_halves(const std::string& file, const scripts::Flight& flight) {
     refuse("ou", "height", flight.view.height);
 }
 
-// Returns the memory of the film's renderer: where second eyes are carried, what draws them has a part of it.
+// Returns the memory of the film's renderer: where pixels are carried, what carries them has a part of it.
 int renderer_memory_mb(const FlyArguments& arguments, const Common& common, const scripts::Flight& flight) {
   const bool has_pairs = std::ranges::any_of(flight.views, [](const scripts::ViewCommand& command) {
     return command.view.eyes && command.view.eyes->layout;
   });
-  return arguments.stereo.carries() && has_pairs ? common.memory_mb - pair_memory_mb(common.memory_mb)
-                                                 : common.memory_mb;
+  return (arguments.stereo.carries() && has_pairs) || arguments.reuse_px > 0
+             ? common.memory_mb - carrying_memory_mb(common.memory_mb)
+             : common.memory_mb;
 }
 
 // Returns the files that the film reads, also those that settings of the flight name.
@@ -264,7 +268,8 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
             flight.view, scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
             chosen.settings, parse_interest(image),
             {image.backend ? std::nullopt : std::optional(base), terrain,
-             arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt})};
+             arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt,
+             arguments.reuse_px > 0 ? std::optional(arguments.reuse_px) : std::nullopt})};
     if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
     film.plan.take_palettes(*palettes);
     return film;
@@ -361,15 +366,13 @@ void fly(FlyArguments& arguments, const Common& common) {
     is_begun = true;
     return made;
   };
-  const auto pair = [&](core::Renderer& first_eyes, double gap_px) {
-    return std::make_unique<PairDrawer>(
-        first_eyes, planet,
-        PairOptions{
-            .gap_px = gap_px,
-            .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
-            .threads = common.threads});
+  const auto carried = [&](core::Renderer& first_images, CarriedDrawerOptions options) {
+    options.memory_bytes =
+        std::size_t{1048576} * static_cast<std::size_t>(carrying_memory_mb(common.memory_mb));
+    options.threads = common.threads;
+    return std::make_unique<CarriedDrawer>(first_images, planet, options);
   };
-  session.make(plan, reports, arguments.image, {renderer, pair}, overlays, common.quiet);
+  session.make(plan, reports, arguments.image, {renderer, carried}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
@@ -408,11 +411,19 @@ void add_fly(CLI::App& program, Common& common) {
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw frames below the ground in one colour, instead of failing before the first frame");
   add_method_options(*command, arguments->stereo);
+  command
+      ->add_option("--reuse", arguments->reuse_px,
+                   "Let frames take pixels of the last key frame (every " + std::to_string(kKeyFrames) +
+                       "th) where these are off by this many pixels at most; 0: draw every frame in full")
+      ->check(number_within(0, kMostReuse_px))
+      ->capture_default_str();
   add_render_options(*command, arguments->image);
   add_examples(*command, {{"a video; the same command continues a stopped one",
                            "vpe fly valles.flight mars.vpe -o film.mp4"},
                           {"a quick look: every 45th frame, small",
                            "vpe fly valles.flight mars.vpe -o preview --frames 0-299x45 --size 480x270"},
+                          {"frames that take what they can from the last key frame",
+                           "vpe fly valles.flight mars.vpe -o film.mp4 --reuse 0.5"},
                           {"one of four machines", "vpe fly valles.flight mars.vpe -o film.mp4 --part 1/4"}});
   command->callback([arguments, &common] { fly(*arguments, common); });
 }

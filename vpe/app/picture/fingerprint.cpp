@@ -24,7 +24,7 @@ void add(Digest& digest, const core::Palette& palette) {
 }  // namespace
 
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s, const FingerprintEyes& eyes) {
+                           const core::Settings& settings, double time_s, const FingerprintOrigin& origin) {
   const core::View& view = request.view;
   Digest digest;
   digest.add(kEncoding).add(basis.program).add(basis.planet).add(core::to_string(basis.backend));
@@ -52,11 +52,12 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
   if (request.keeps_levels) digest.add("keeps levels");
-  if (eyes.stereo) {
-    digest.add("stereo").add(core::to_string(eyes.stereo->layout)).add(eyes.stereo->eye_base_m);
-    if (eyes.stereo->convergence_m > 0) digest.add("convergence").add(eyes.stereo->convergence_m);
+  if (origin.stereo) {
+    digest.add("stereo").add(core::to_string(origin.stereo->layout)).add(origin.stereo->eye_base_m);
+    if (origin.stereo->convergence_m > 0) digest.add("convergence").add(origin.stereo->convergence_m);
   }
-  if (eyes.carried_gap_px) digest.add("carried").add(*eyes.carried_gap_px);
+  if (origin.carried_gap_px) digest.add("carried").add(*origin.carried_gap_px);
+  if (origin.reuse) digest.add("reuse").add(origin.reuse->key).add(origin.reuse->most_added_px);
   return digest.hex();
 }
 

@@ -18,10 +18,16 @@ struct RenderBasis {
   int memory_mb = 0;  // bounds the number of triangles and the textures
 };
 
-// The eyes of an image.
-struct FingerprintEyes {
+// Describes how an image is made of others.
+struct FingerprintOrigin {
   std::optional<core::StereoPair> stereo;
   std::optional<double> carried_gap_px;  // of a second eye that is carried from the first
+  // The key frame whose pixels a frame of a film takes.
+  struct Reuse {
+    std::string key;  // its fingerprint
+    double most_added_px = 0;
+  };
+  std::optional<Reuse> reuse;
 };
 
 // Returns a digest of everything that the image depends on, so that equal fingerprints mean equal images. Files
@@ -29,6 +35,7 @@ struct FingerprintEyes {
 // count; the time counts only where the image shows it. In stereo the request is that of the middle between both
 // eyes. Throws base::FileError.
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings, double time_s = 0, const FingerprintEyes& eyes = {});
+                           const core::Settings& settings, double time_s = 0,
+                           const FingerprintOrigin& origin = {});
 
 }  // namespace vpe::app

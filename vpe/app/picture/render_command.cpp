@@ -16,11 +16,11 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/pair_drawer.h"
 #include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
@@ -223,17 +223,17 @@ std::optional<core::PaletteEnds> take_palette_of_view(core::DrawRequest& request
 }
 
 // Returns what draws the eyes of a pair, or null if both are drawn in full.
-std::unique_ptr<PairDrawer> pair_drawer(const RenderArguments& arguments, const Common& common,
-                                        const std::shared_ptr<const paging::PlanetFile>& planet,
-                                        const core::DrawRequest& request, core::Renderer& renderer) {
+std::unique_ptr<CarriedDrawer> pair_drawer(const RenderArguments& arguments, const Common& common,
+                                           const std::shared_ptr<const paging::PlanetFile>& planet,
+                                           const core::DrawRequest& request, core::Renderer& renderer) {
   if (!arguments.stereo.method.carries()) return nullptr;
   if (const std::string why = why_not_carried(request); !why.empty())
     throw UsageError("--stereo-method reproject: " + why + "; give --stereo-method full");
-  return std::make_unique<PairDrawer>(
+  return std::make_unique<CarriedDrawer>(
       renderer, planet,
-      PairOptions{
+      CarriedDrawerOptions{
           .gap_px = arguments.stereo.method.gap_px,
-          .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(pair_memory_mb(common.memory_mb)),
+          .memory_bytes = std::size_t{1048576} * static_cast<std::size_t>(carrying_memory_mb(common.memory_mb)),
           .threads = common.threads});
 }
 
@@ -284,7 +284,7 @@ void render(RenderArguments& arguments, const Common& common) {
   std::vector<lod::TileExplanation> explained;  // of what rays drew last
   std::vector<lod::TileExplanation> cast;       // of the image
   Common rest = common;
-  if (arguments.stereo.method.carries()) rest.memory_mb -= pair_memory_mb(common.memory_mb);
+  if (arguments.stereo.method.carries()) rest.memory_mb -= carrying_memory_mb(common.memory_mb);
   const auto renderer = renderer_for(arguments, rest, planet, settings, request, is_backend_named,
                                      arguments.explain_lod.empty() ? nullptr : &explained);
   RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
@@ -316,11 +316,11 @@ void render(RenderArguments& arguments, const Common& common) {
     const core::DrawResult result = finish(request, renderer->draw(request));  // sets `cast`
     write_image_files(arguments, common, request, result, recipe, *planet, cast);
   } else {
-    const std::unique_ptr<PairDrawer> pair = pair_drawer(arguments, common, planet, request, *renderer);
+    const std::unique_ptr<CarriedDrawer> pair = pair_drawer(arguments, common, planet, request, *renderer);
     const auto draw = [&](const core::DrawRequest& one, Eye eye) {
       if (pair == nullptr || eye == Eye::kMiddle) return finish(one, renderer->draw(one));
-      if (eye == Eye::kLeft) return finish(one, pair->first(one));
-      core::DrawResult right = pair->second(one);
+      if (eye == Eye::kLeft) return finish(one, pair->draw_first(one));
+      core::DrawResult right = pair->draw_carried(one);
       write_maps(arguments.stereo, pair->carried(), right.frame, one, *renderer);
       return finish(one, std::move(right));
     };

@@ -13,7 +13,7 @@ namespace vpe::app {
 
 // Values of the options that add_method_options() adds: how the second eye is drawn.
 struct StereoMethod {
-  std::string name = "full";  // "reproject": the second eye is carried from the first (pair_drawer.h)
+  std::string name = "full";  // "reproject": the second eye is carried from the first (carried_drawer.h)
   // Widest gap between carried pixels that is filled, pixels; 0: both eyes are drawn in full. Smaller: more is drawn.
   double gap_px = 2;
 

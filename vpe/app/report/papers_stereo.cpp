@@ -7,7 +7,7 @@
 #include <set>
 #include <span>
 
-#include "vpe/app/picture/pair_drawer.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/base/number.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
@@ -57,11 +57,11 @@ struct PairTimes {
   double casting_s = 0;  // of the right eye's pixels
 };
 
-PairTimes time_pair(PairDrawer& pair, core::Renderer& renderer, const Eyes& eyes, int rounds) {
+PairTimes time_pair(CarriedDrawer& pair, core::Renderer& renderer, const Eyes& eyes, int rounds) {
   std::vector<double> casting_s;
-  const std::vector<std::function<void()>> cases{[&] { pair.first(eyes.left); },
+  const std::vector<std::function<void()>> cases{[&] { pair.draw_first(eyes.left); },
                                                  [&] {
-                                                   pair.second(eyes.right);
+                                                   pair.draw_carried(eyes.right);
                                                    casting_s.push_back(pair.drawing_s());
                                                  },
                                                  [&] { renderer.draw(eyes.right); }};
@@ -99,10 +99,10 @@ Figure8 draw_figure(const StereoPaperPlan& plan, const std::shared_ptr<const pag
     core::write_image(folder / ("stereo-" + std::string(look.name) + "-" + part + ".png"), pixels, frame.width,
                       frame.height);
   };
-  PairOptions options{.memory_bytes = plan.memory_bytes / 4, .threads = plan.threads.back()};
-  PairDrawer pair(renderer, planet, options);
-  const core::Frame left = pair.first(eyes.left).frame;
-  const core::Frame right = pair.second(eyes.right).frame;
+  CarriedDrawerOptions options{.memory_bytes = plan.memory_bytes / 4, .threads = plan.threads.back()};
+  CarriedDrawer pair(renderer, planet, options);
+  const core::Frame left = pair.draw_first(eyes.left).frame;
+  const core::Frame right = pair.draw_carried(eyes.right).frame;
   const core::Frame full = renderer.draw(eyes.right).frame;
   write("a-left", left.colour, left);
   write("b-right", right.colour, right);
@@ -116,20 +116,20 @@ Figure8 draw_figure(const StereoPaperPlan& plan, const std::shared_ptr<const pag
   figure.difference = mean_difference(right, full);
 
   options.filters = false;
-  PairDrawer unfiltered(renderer, planet, options);
-  unfiltered.first(eyes.left);
-  const core::Frame nearest = unfiltered.second(eyes.right).frame;
+  CarriedDrawer unfiltered(renderer, planet, options);
+  unfiltered.draw_first(eyes.left);
+  const core::Frame nearest = unfiltered.draw_carried(eyes.right).frame;
   write("f-differences-unfiltered", colour_differences(nearest, full), right);
   figure.unfiltered_difference = mean_difference(nearest, full);
 
   options.filters = true;
   options.uses_clear_air = false;
-  PairDrawer from_the_eye(renderer, planet, options);
-  from_the_eye.first(eyes.left);
+  CarriedDrawer from_the_eye(renderer, planet, options);
+  from_the_eye.draw_first(eyes.left);
   std::vector<double> ratios;
   for (int round = 0; round <= plan.rounds; ++round) {
-    pair.second(eyes.right);
-    from_the_eye.second(eyes.right);
+    pair.draw_carried(eyes.right);
+    from_the_eye.draw_carried(eyes.right);
     if (round > 0 && pair.drawing_s() > 0) ratios.push_back(from_the_eye.drawing_s() / pair.drawing_s());
   }
   figure.incoherent_casting = report::median(ratios);
@@ -235,7 +235,7 @@ StereoPaper measure_stereo_paper(const StereoPaperPlan& plan,
   for (const int threads : plan.threads) {
     const auto rays = voxel::make_ray_renderer(planet, {.memory_bytes = plan.memory_bytes, .threads = threads});
     if (paper.eye_base_m == 0) paper.eye_base_m = base_of(plan, *rays);
-    PairDrawer pair(*rays, planet, {.memory_bytes = plan.memory_bytes / 4, .threads = threads});
+    CarriedDrawer pair(*rays, planet, {.memory_bytes = plan.memory_bytes / 4, .threads = threads});
     for (std::size_t n = 0; n < kLooks.size(); ++n) {
       step();
       const Eyes eyes = eyes_of(plan, kLooks[n], paper.eye_base_m);

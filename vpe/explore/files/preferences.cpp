@@ -67,11 +67,11 @@ const core::KeyRegistry<Preferences>& preference_keys() {
       {"draw.budget_ms", Declare::number<&P::draw_budget_ms>(0, 1000), "",
        "milliseconds that an image may take while the camera moves, held by drawing coarser; 0 = no limit"},
       {"draw.warp",
-       Declare::choice<&P::warp>({core::word("grid", Warp::kGrid), core::word("polynomial", Warp::kPolynomial),
-                                  core::word("off", Warp::kOff)}),
+       Declare::choice<&P::warp>({core::word("grid", Warp::kGrid), core::word("carry", Warp::kCarry),
+                                  core::word("polynomial", Warp::kPolynomial), core::word("off", Warp::kOff)}),
        "",
-       "while an image is drawn the last one follows the camera: as a grid with the distances of the ground; by one pair "
-       "of polynomials; or not at all"},
+       "while an image is drawn the last one follows the camera: as a grid with the distances of the ground; pixel by pixel; "
+       "by one pair of polynomials; or not at all"},
       {"ui.scale", Declare::number<&P::ui_scale>(0, 8), "",
        "size of letters and panels; 0 = the scale of the display"},
       {"ui.longitude",

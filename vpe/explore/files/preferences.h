@@ -29,6 +29,7 @@ enum class Warp {
   kOff,         // not at all: it stands still
   kPolynomial,  // by two polynomials for the whole image (warp::fit_motion)
   kGrid,        // as a grid whose vertices have ranges of their own (warp::ImageGrid)
+  kCarry,       // pixel by pixel (warp::Carrier), before the grid
 };
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 

@@ -390,16 +390,26 @@ Texture::Texture() {
 Texture::~Texture() { glDeleteTextures(1, &name_); }
 
 void Texture::upload(const core::RgbImage& image) {
+  static_assert(sizeof(base::Rgb) == 3);
+  upload(GL_RGB, &image.pixels.data()->r, image.width, image.height);
+}
+
+void Texture::upload_rgba(std::span<const std::uint8_t> pixels, int width, int height) {
+  upload(GL_RGBA, pixels.data(), width, height);
+}
+
+void Texture::upload(unsigned format, const std::uint8_t* pixels, int width, int height) {
   glBindTexture(GL_TEXTURE_2D, name_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  if (image.width != width_ || image.height != height_) {
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, image.width, image.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                 image.pixels.data());
-    width_ = image.width;
-    height_ = image.height;
+  if (width == width_ && height == height_ && format == format_) {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format, GL_UNSIGNED_BYTE, pixels);
     return;
   }
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, format, GL_UNSIGNED_BYTE,
+               pixels);
+  width_ = width;
+  height_ = height;
+  format_ = format;
 }
 
 void* Texture::id() const { return reinterpret_cast<void*>(static_cast<std::uintptr_t>(name_)); }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -138,12 +139,17 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
 
   void upload(const core::RgbImage& image);
+  // Takes pixels of red, green, blue and opacity, row by row from the top.
+  void upload_rgba(std::span<const std::uint8_t> pixels, int width, int height);
   int width() const { return width_; }
   int height() const { return height_; }
   void* id() const;  // ImTextureID
 
  private:
+  void upload(unsigned format, const std::uint8_t* pixels, int width, int height);
+
   unsigned name_ = 0;
+  unsigned format_ = 0;
   int width_ = 0;
   int height_ = 0;
 };

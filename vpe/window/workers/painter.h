@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vpe/core/appearance/palette.h"
 #include "vpe/core/backend.h"
@@ -28,6 +29,7 @@ struct ImageRequest {
   double convergence_m = 0;        // with stereo; where both images coincide; 0: infinitely far
   double flight_time_s = 0;        // for the overlay of that name
   std::optional<double> logged_s;  // its time in the log while a session is recorded
+  bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is a grid
 };
 
 // Holds the result of a request.
@@ -39,6 +41,7 @@ struct DrawnImage {
   core::DrawResult result;
   // The image as a grid that follows the camera; absent unless the request wants rough ranges and there are some.
   std::optional<warp::ImageGrid> grid;
+  std::vector<float> range_m;  // of its pixels, as core::Frame::range_m; empty unless the request keeps it
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
   std::string error;  // empty if the image was drawn

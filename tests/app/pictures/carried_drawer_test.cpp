@@ -1,5 +1,5 @@
-// Pairs whose second eye is carried, against pairs that are drawn in full.
-#include "vpe/app/picture/pair_drawer.h"
+// Second eyes and frames of films that are carried, against those that are drawn in full.
+#include "vpe/app/picture/carried_drawer.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 namespace core = vpe::core;
 namespace warp = vpe::warp;
 using test_support::Random;
-using vpe::app::PairDrawer;
+using vpe::app::CarriedDrawer;
 
 constexpr unsigned kSeed = 20261125;
 constexpr int kWidth = 96;
@@ -41,9 +41,9 @@ Eyes eyes_at(const mars::Pose& pose, double radius_m, double base_m) {
   return eyes;
 }
 
-class PairDrawerTest : public test_support::GlTest {
+class CarriedDrawerTest : public test_support::GlTest {
  protected:
-  PairDrawerTest()
+  CarriedDrawerTest()
       : planet_(bumpy_planet()), rays_(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2})) {}
 
   static std::shared_ptr<const paging::PlanetFile> bumpy_planet() {
@@ -90,9 +90,9 @@ double off_px(const core::DrawRequest& eye, double base_m, const core::Frame& is
   return best_px;
 }
 
-TEST_F(PairDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
+TEST_F(CarriedDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
   Random random(kSeed);
-  PairDrawer pair(*rays_, planet_, {.threads = 2});
+  CarriedDrawer pair(*rays_, planet_, {.threads = 2});
   double most_share = 0;
   double carried = 0;
   for (int n = 0; n < 500; ++n) {
@@ -100,8 +100,8 @@ TEST_F(PairDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
     const mars::Pose pose = any_pose(random, height_m);
     const double base_m = height_m * std::pow(10.0, random.uniform(-3.0, -0.8));
     const Eyes eyes = eyes_at(pose, planet_->radius_m(), base_m);
-    pair.first(eyes.left);
-    const core::DrawResult right = pair.second(eyes.right);
+    pair.draw_first(eyes.left);
+    const core::DrawResult right = pair.draw_carried(eyes.right);
     const core::DrawResult full = rays_->draw(eyes.right);
     ASSERT_TRUE(right.certificate.carried) << n;
     const double bound_px = right.certificate.shift_bound_px + full.certificate.shift_bound_px;
@@ -123,8 +123,113 @@ TEST_F(PairDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
   EXPECT_GT(carried / 500, 0.5);
 }
 
-TEST_F(PairDrawerTest, TheFirstEyeIsThatOfTheRenderer) {
-  PairDrawer pair(*rays_, planet_, {.threads = 2});
+// Returns by how much the ground of a carried pixel is off, in the first image, from the best that the full image has within
+// two pixels.
+double off_in_first_px(const core::View& from, const core::DrawRequest& request, const core::Frame& is,
+                       const core::Frame& full, int x, int y) {
+  constexpr int kAround = 2;
+  const glm::dvec3 camera_m = request.view.camera.position_m;
+  const glm::dvec3 ray = core::pixel_ray(request.view, x + 0.5, y + 0.5);
+  const auto place_px = [&](float range_m) {
+    return core::project(from, camera_m + static_cast<double>(range_m) * ray).xy;
+  };
+  const glm::dvec2 carried_px = place_px(is.range_m[static_cast<std::size_t>(y * kWidth + x)]);
+  double best_px = std::numeric_limits<double>::infinity();
+  for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, kHeight - 1); ++v) {
+    for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, kWidth - 1); ++u) {
+      const float range_m = std::min(full.range_m[static_cast<std::size_t>(v * kWidth + u)], 1e12F);
+      best_px = std::min(best_px, glm::length(carried_px - place_px(range_m)));
+    }
+  }
+  return best_px;
+}
+
+TEST_F(CarriedDrawerTest, FramesOfTenFilmsKeepTheirBounds) {
+  constexpr double kMostAdded_px = 0.5;
+  Random random(kSeed + 1);
+  CarriedDrawer film(*rays_, planet_, {.most_added_px = kMostAdded_px, .repaints_sky = true, .threads = 2});
+  double most_share = 0;
+  double carried = 0;
+  int frames = 0;
+  for (int n = 0; n < 10; ++n) {
+    double height_m = 0;
+    mars::Pose pose = any_pose(random, height_m);
+    core::DrawRequest request = test_support::request_for(pose, planet_->radius_m(), kWidth, kHeight);
+    request.settings.mode = core::Mode::kLit;
+    request.want_range = true;
+    const glm::dvec3 step_m = height_m * glm::dvec3(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
+                                                    random.uniform(-0.02, 0.02));
+    const double turn_deg = random.uniform(-1, 1);
+    const double nod_deg = random.uniform(-0.5, 0.5);
+    film.draw_first(request);
+    const core::View first = request.view;
+    for (int k = 1; k < 8; ++k, ++frames) {
+      pose.yaw_deg += turn_deg;
+      pose.pitch_deg += nod_deg;
+      request.view = test_support::request_for(pose, planet_->radius_m(), kWidth, kHeight).view;
+      request.view.camera.position_m += static_cast<double>(k) * step_m;
+      const core::DrawResult is = film.draw_carried(request);
+      const core::DrawResult full = rays_->draw(request);
+      ASSERT_TRUE(is.certificate.carried) << n << ", frame " << k;
+      ASSERT_LE(is.certificate.carried->added_px, kMostAdded_px + 2 * warp::kCarriedPosition_px);
+      // Bounds are of the new image's middle; in the first image it is larger or smaller by the ratio of distances.
+      const double bound_px = (is.certificate.shift_bound_px + full.certificate.shift_bound_px) *
+                                  core::corner_stretch(request.view) * 1.2 +
+                              1e-3;
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          const auto at = static_cast<std::size_t>(y * kWidth + x);
+          const warp::Origin origin = film.carried().origin[at];
+          if (origin != warp::Origin::kCarried && origin != warp::Origin::kBetween) continue;
+          const double off = off_in_first_px(first, request, is.frame, full.frame, x, y);
+          ASSERT_LE(off, bound_px) << "film " << n << ", frame " << k << ", pixel " << x << ", " << y;
+          most_share = std::max(most_share, off / bound_px);
+        }
+      }
+      carried += is.certificate.carried->carried_share + is.certificate.carried->between_share;
+    }
+  }
+  std::printf("carried %.3f, largest share of the bound %.3f\n", carried / frames, most_share);
+  EXPECT_GT(carried / frames, 0.5);
+}
+
+TEST_F(CarriedDrawerTest, SkiesAreThoseOfTheNewCamera) {
+  core::DrawRequest request =
+      test_support::request_for({10, 20, 15'000, 40, 2, 0}, planet_->radius_m(), kWidth, kHeight);
+  request.settings.mode = core::Mode::kLit;
+  request.settings.smooth_edges = false;
+  request.want_range = true;
+  CarriedDrawer film(*rays_, planet_, {.repaints_sky = true, .threads = 2});
+  film.draw_first(request);
+  // Sixty kilometres higher the sky is darker.
+  request.view =
+      test_support::request_for({10, 20, 75'000, 41, 1, 0}, planet_->radius_m(), kWidth, kHeight).view;
+  const core::DrawResult is = film.draw_carried(request);
+  const core::DrawResult full = rays_->draw(request);
+  int skies = 0;
+  for (std::size_t n = 0; n < is.frame.colour.size(); ++n) {
+    if (film.carried().origin[n] != warp::Origin::kSky || full.frame.range_m[n] != core::kSkyRange) continue;
+    ++skies;
+    ASSERT_EQ(is.frame.colour[n], full.frame.colour[n]) << n;
+    ASSERT_EQ(is.frame.range_m[n], core::kSkyRange);
+  }
+  EXPECT_GT(skies, 500);
+}
+
+TEST_F(CarriedDrawerTest, AnImageOfWhichLittleIsKnownIsDrawnInFull) {
+  CarriedDrawer film(*rays_, planet_, {.most_drawn_share = 0.25, .threads = 2});
+  core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).left;
+  film.draw_first(request);
+  request.view = eyes_at({10, 20, 15'000, 75, -12, 0}, planet_->radius_m(), 500).left.view;
+  const core::DrawResult is = film.draw_carried(request);
+  EXPECT_FALSE(is.certificate.carried);
+  EXPECT_EQ(is.frame.colour, rays_->draw(request).frame.colour);
+  film.forget();
+  EXPECT_THROW((void)film.draw_carried(request), std::logic_error);
+}
+
+TEST_F(CarriedDrawerTest, TheFirstEyeIsThatOfTheRenderer) {
+  CarriedDrawer pair(*rays_, planet_, {.threads = 2});
   for (const bool smooth : {true, false}) {
     for (const bool want_range : {true, false}) {
       core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).left;
@@ -132,7 +237,7 @@ TEST_F(PairDrawerTest, TheFirstEyeIsThatOfTheRenderer) {
       request.settings.gamma = 1.7;
       request.want_range = want_range;
       const core::DrawResult full = rays_->draw(request);
-      const core::DrawResult first = pair.first(request);
+      const core::DrawResult first = pair.draw_first(request);
       EXPECT_EQ(first.frame.colour, full.frame.colour);
       EXPECT_EQ(first.frame.range_m, full.frame.range_m);
       EXPECT_EQ(core::to_json(first.certificate), core::to_json(full.certificate));
@@ -140,12 +245,12 @@ TEST_F(PairDrawerTest, TheFirstEyeIsThatOfTheRenderer) {
   }
 }
 
-TEST_F(PairDrawerTest, TheCertificateSaysWhatIsCarried) {
-  PairDrawer pair(*rays_, planet_, {.threads = 2});
+TEST_F(CarriedDrawerTest, TheCertificateSaysWhatIsCarried) {
+  CarriedDrawer pair(*rays_, planet_, {.threads = 2});
   const Eyes eyes = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500);
-  const core::Certificate first = pair.first(eyes.left).certificate;
+  const core::Certificate first = pair.draw_first(eyes.left).certificate;
   EXPECT_FALSE(first.carried);
-  const core::Certificate second = pair.second(eyes.right).certificate;
+  const core::Certificate second = pair.draw_carried(eyes.right).certificate;
   ASSERT_TRUE(second.carried);
   EXPECT_GT(second.carried->carried_share, 0.5);
   EXPECT_GT(second.carried->drawn_share, 0);
@@ -160,28 +265,28 @@ TEST_F(PairDrawerTest, TheCertificateSaysWhatIsCarried) {
   EXPECT_EQ(core::to_json(first).dump().find("carrying_px"), std::string::npos);
 }
 
-TEST_F(PairDrawerTest, ThreadsChangeNoBit) {
+TEST_F(CarriedDrawerTest, ThreadsChangeNoBit) {
   const Eyes eyes = eyes_at({10, 20, 15'000, 40, -12, 5}, planet_->radius_m(), 500);
   std::vector<core::Frame> frames;
   for (const int threads : {1, 3}) {
     const auto rays = vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, threads});
-    PairDrawer pair(*rays, planet_, {.threads = threads});
-    pair.first(eyes.left);
-    frames.push_back(pair.second(eyes.right).frame);
+    CarriedDrawer pair(*rays, planet_, {.threads = threads});
+    pair.draw_first(eyes.left);
+    frames.push_back(pair.draw_carried(eyes.right).frame);
   }
   EXPECT_EQ(frames[0].colour, frames[1].colour);
   EXPECT_EQ(frames[0].range_m, frames[1].range_m);
 }
 
-TEST_F(PairDrawerTest, ACameraBelowTheGroundIsDrawnInFull) {
-  PairDrawer pair(*rays_, planet_, {.threads = 2});
+TEST_F(CarriedDrawerTest, ACameraBelowTheGroundIsDrawnInFull) {
+  CarriedDrawer pair(*rays_, planet_, {.threads = 2});
   const Eyes above = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500);
   const Eyes below = eyes_at({10, 20, -15'000, 40, -12, 0}, planet_->radius_m(), 500);
   const core::DrawResult full = rays_->draw(below.right);
   ASSERT_TRUE(full.certificate.is_below_ground);
   for (const core::DrawRequest& left : {above.left, below.left}) {
-    pair.first(left);
-    const core::DrawResult right = pair.second(below.right);
+    pair.draw_first(left);
+    const core::DrawResult right = pair.draw_carried(below.right);
     EXPECT_EQ(right.frame.colour, full.frame.colour);
     EXPECT_TRUE(right.certificate.is_below_ground);
     EXPECT_FALSE(right.certificate.carried);
@@ -189,10 +294,10 @@ TEST_F(PairDrawerTest, ACameraBelowTheGroundIsDrawnInFull) {
   }
 }
 
-TEST_F(PairDrawerTest, SaysWhatCannotBeCarried) {
-  PairDrawer pair(*rays_, planet_, {.threads = 1});
+TEST_F(CarriedDrawerTest, SaysWhatCannotBeCarried) {
+  CarriedDrawer pair(*rays_, planet_, {.threads = 1});
   core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).right;
-  EXPECT_THROW((void)pair.second(request), std::logic_error);
+  EXPECT_THROW((void)pair.draw_carried(request), std::logic_error);
   EXPECT_EQ(vpe::app::why_not_carried(request), "");
   request.settings.samples = 4;
   EXPECT_NE(vpe::app::why_not_carried(request).find("samples"), std::string::npos);

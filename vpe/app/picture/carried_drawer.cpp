@@ -1,7 +1,8 @@
-#include "vpe/app/picture/pair_drawer.h"
+#include "vpe/app/picture/carried_drawer.h"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
@@ -66,13 +67,13 @@ void state(const warp::CarriedImage& image, const core::Certificate& first, core
 
 std::string why_not_carried(const core::DrawRequest& request) {
   if (request.view.projection != core::Projection::kPerspective)
-    return "only perspective images are carried to the second eye";
+    return "only perspective images are carried from others";
   if (request.settings.samples > 1) return "images with several samples a pixel (samples) are not carried";
   return voxel::why_not(request);
 }
 
-PairDrawer::PairDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
-                       const PairOptions& options)
+CarriedDrawer::CarriedDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
+                             const CarriedDrawerOptions& options)
     : renderer_(renderer),
       rays_(dynamic_cast<core::PixelRenderer*>(&renderer)),
       surface_(planet, options.memory_bytes / 4),
@@ -84,7 +85,7 @@ PairDrawer::PairDrawer(core::Renderer& renderer, const std::shared_ptr<const pag
   rays_ = own_rays_.get();
 }
 
-void PairDrawer::finish(const core::DrawRequest& request, core::Frame& frame) {
+void CarriedDrawer::finish(const core::DrawRequest& request, core::Frame& frame) {
   if (request.settings.smooth_edges && !frame.colour.empty()) {
     inverse_depth_.resize(frame.range_m.size());
     core::inverse_depths(request.view, frame.range_m, pool_, inverse_depth_);
@@ -94,7 +95,8 @@ void PairDrawer::finish(const core::DrawRequest& request, core::Frame& frame) {
   if (!request.want_range) frame.range_m = {};
 }
 
-core::DrawResult PairDrawer::first(const core::DrawRequest& request) {
+core::DrawResult CarriedDrawer::draw_first(const core::DrawRequest& request) {
+  has_first_ = false;
   core::DrawResult result = renderer_.draw(raw(request));
   view_ = request.view;
   raw_ = result.frame;
@@ -104,8 +106,23 @@ core::DrawResult PairDrawer::first(const core::DrawRequest& request) {
   return result;
 }
 
-core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
-  if (!has_first_) throw std::logic_error("PairDrawer: there is no first eye");
+void CarriedDrawer::choose_pixels(const core::DrawRequest& request) {
+  const bool draws_sky =
+      options_.repaints_sky && request.settings.background == core::Background::kSky && request.want_colour;
+  const std::size_t count = carried_.origin.size();
+  wanted_.resize(count);
+  clear_m_.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const bool is_open = carried_.origin[n] == warp::Origin::kOpen;
+    const bool is_sky = draws_sky && carried_.origin[n] == warp::Origin::kSky;
+    wanted_[n] = is_open || is_sky ? 1 : 0;
+    const bool is_known = options_.uses_clear_air && std::isfinite(carried_.range_m[n]);
+    clear_m_[n] = is_sky ? core::kSkyRange : is_known ? carried_.range_m[n] : 0;
+  }
+}
+
+core::DrawResult CarriedDrawer::draw_carried(const core::DrawRequest& request) {
+  if (!has_first_) throw std::logic_error("CarriedDrawer: there is no first image");
   drawing_s_ = 0;
   const double ground_m =
       paging::distance_to_ground_m(surface_, request.view.camera.position_m, request.settings.exaggeration);
@@ -115,19 +132,19 @@ core::DrawResult PairDrawer::second(const core::DrawRequest& request) {
   }
   warp::CarryOptions options;
   options.gap_px = options_.gap_px;
+  options.most_added_px = static_cast<float>(options_.most_added_px);
   options.filters = options_.filters;
   options.nearest_m = kOfDistance * ground_m;
   carrier_.carry(view_, raw_, request.view, options, pool_, carried_);
-  wanted_.resize(carried_.origin.size());
-  std::ranges::transform(carried_.origin, wanted_.begin(), [](warp::Origin origin) {
-    return static_cast<std::uint8_t>(origin == warp::Origin::kOpen ? 1 : 0);
-  });
+  if (static_cast<double>(carried_.count(warp::Origin::kOpen)) >
+      options_.most_drawn_share * static_cast<double>(carried_.origin.size())) {
+    carried_ = {};
+    return renderer_.draw(request);
+  }
+  choose_pixels(request);
   core::Frame frame{carried_.width, carried_.height, std::move(carried_.colour), carried_.range_m};
-  const std::vector<float> unknown_m(options_.uses_clear_air ? 0 : wanted_.size());
   const auto begun = std::chrono::steady_clock::now();
-  core::DrawResult result = rays_->draw_pixels(
-      raw(request), {wanted_, options_.uses_clear_air ? std::span<const float>(carried_.range_m) : unknown_m},
-      frame);
+  core::DrawResult result = rays_->draw_pixels(raw(request), {wanted_, clear_m_}, frame);
   drawing_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   state(carried_, certificate_, result.certificate);
   finish(request, frame);
