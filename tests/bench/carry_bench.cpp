@@ -1,7 +1,7 @@
 // Compares images that are carried from another one (vpe/warp) with images that are drawn in full by rays: processor time of
 // a pixel, and what is left to draw. docs/measurements/rays.md has the figures.
 //
-//   carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX]]]
+//   carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX [CASE]]]]
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -45,8 +45,8 @@ core::DrawRequest request_for(const mars::Pose& pose, double radius_m, int width
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 5) {
-    std::fprintf(stderr, "usage: carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX]]]\n");
+  if (argc < 2 || argc > 6) {
+    std::fprintf(stderr, "usage: carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX [CASE]]]]\n");
     return 2;
   }
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 7;
@@ -74,7 +74,9 @@ int main(int argc, char** argv) {
   std::printf("%d x %d, one thread, at most %.2f px added\n\n", width, height, most_added_px);
   std::printf("| motion | full, ns a pixel | carrying | with what is drawn | of full | open | added, px |\n");
   std::printf("|---|---|---|---|---|---|---|\n");
+  const int only = argc > 5 ? std::atoi(argv[5]) : -1;
   for (const Case& one : cases) {
+    if (only >= 0 && &one != &cases[static_cast<std::size_t>(only)]) continue;
     const core::DrawRequest from = request_for(one.from, radius_m, width, height);
     const core::DrawRequest to = request_for(one.to, radius_m, width, height);
     vpe::app::CarriedDrawer drawer(

@@ -58,7 +58,7 @@ class BlockFitter {
     glm::dvec2 high{-kNoBound};
     double px_m = 0;  // largest displacement of a pixel for 1 / m of inverse depth
     double least_z = kNoBound;
-    double widest_px = 0;            // of a cell
+    double widest_px = 0;           // of a cell
     double least_scale = kNoBound;  // pixels of the new image for one of the first
   };
   ExactPlane plane_of(glm::ivec2 first, glm::ivec2 size) const;

@@ -201,9 +201,9 @@ TEST_F(CarriedDrawerTest, SkiesAreThoseOfTheNewCamera) {
   request.want_range = true;
   CarriedDrawer film(*rays_, planet_, {.repaints_sky = true, .threads = 2});
   film.draw_first(request);
-  // Sixty kilometres higher the sky is darker.
+  // A little higher the sky is darker.
   request.view =
-      test_support::request_for({10, 20, 75'000, 41, 1, 0}, planet_->radius_m(), kWidth, kHeight).view;
+      test_support::request_for({10, 20, 16'000, 41, 1, 0}, planet_->radius_m(), kWidth, kHeight).view;
   const core::DrawResult is = film.draw_carried(request);
   const core::DrawResult full = rays_->draw(request);
   int skies = 0;
@@ -214,6 +214,25 @@ TEST_F(CarriedDrawerTest, SkiesAreThoseOfTheNewCamera) {
     ASSERT_EQ(is.frame.range_m[n], core::kSkyRange);
   }
   EXPECT_GT(skies, 500);
+}
+
+TEST_F(CarriedDrawerTest, AMarginLeavesNoStripAtTheBorder) {
+  core::DrawRequest request = eyes_at({10, 20, 15'000, 40, -12, 0}, planet_->radius_m(), 500).left;
+  core::DrawRequest turned = request;
+  turned.view = eyes_at({10, 20, 15'000, 43, -12, 0}, planet_->radius_m(), 500).left.view;
+  CarriedDrawer film(*rays_, planet_, {.threads = 2});
+  const core::DrawResult full = film.draw_first(request);
+  const double strip = film.draw_carried(turned).certificate.carried->drawn_share;
+  const core::DrawResult first = film.draw_first(request, {12, 4});
+  const double rest = film.draw_carried(turned).certificate.carried->drawn_share;
+  EXPECT_GT(strip, 0.03);
+  EXPECT_LT(rest, 0.01);
+  ASSERT_EQ(first.frame.colour.size(), full.frame.colour.size());
+  for (std::size_t n = 0; n < full.frame.range_m.size(); ++n) {
+    if (full.frame.range_m[n] == core::kSkyRange) continue;
+    ASSERT_NEAR(first.frame.range_m[n] / full.frame.range_m[n], 1, 1e-3) << n;
+  }
+  EXPECT_EQ(first.certificate.corner_stretch, full.certificate.corner_stretch);
 }
 
 TEST_F(CarriedDrawerTest, AnImageOfWhichLittleIsKnownIsDrawnInFull) {

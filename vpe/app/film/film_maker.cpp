@@ -193,7 +193,7 @@ core::DrawResult FilmMaker::draw_reusing(const PlannedFrame& planned, const core
     key_.reset();
     core::DrawRequest first = plan_.at(key).request;
     first.paging = request.paging;
-    core::DrawResult drawn = drawer.draw_first(first);
+    core::DrawResult drawn = drawer.draw_first(first, planned.reuse->margin_px);
     key_missing_ = drawn.missing;
     if (key != planned.index) keep_failures(drawn);
     key_ = key;

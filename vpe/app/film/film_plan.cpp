@@ -1,5 +1,6 @@
 #include "vpe/app/film/film_plan.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/base/number.h"
+#include "vpe/core/margin.h"
 #include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
@@ -126,12 +128,38 @@ PlannedFrame FilmPlan::alone(std::int64_t frame) const {
   return out;
 }
 
+core::View FilmPlan::view_of(const scripts::FlightState& state) const {
+  core::View view;
+  view.camera = state.camera;
+  view.width = view_.width;
+  view.height = view_.height;
+  view.fov_deg = state.view.fov_deg.value_or(view_.fov_deg);
+  return view;
+}
+
+glm::ivec2 FilmPlan::margin_of(std::int64_t key) const {
+  // A wider margin would take longer than the strips that it saves.
+  constexpr int kMostShare = 8;
+  constexpr double kNearest = 2;  // heights above the ground
+  const auto state_at = [&](std::int64_t frame) { return path_.at(scripts::frame_time(view_.fps, frame)); };
+  const scripts::FlightState first = state_at(key);
+  std::vector<core::View> others;
+  for (std::int64_t n = key + 1; n < key + kKeyFrames; ++n) others.push_back(view_of(state_at(n)));
+  const mars::LonLat place{first.pose.lon_deg, first.pose.lat_deg};
+  const double exaggeration = path_.exaggeration(scripts::frame_time(view_.fps, key));
+  const double ground_m = views_.terrain_height_m ? views_.terrain_height_m(place, exaggeration) : 0;
+  const double height_m = first.pose.alt_m - (std::isfinite(ground_m) ? ground_m : 0);
+  return core::margin_for(view_of(first), others, kNearest * std::max(height_m, 1.0),
+                          {view_.width / kMostShare, view_.height / kMostShare});
+}
+
 std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planned) const {
   const auto can_be_carried = [](const PlannedFrame& one) {
     return !one.stereo && one.request.settings.haze_visibility_m == 0 && why_not_carried(one.request).empty();
   };
   if (!views_.reuse_px || !can_be_carried(planned)) return std::nullopt;
-  const PlannedFrame::Reuse reuse{planned.index - planned.index % kKeyFrames, *views_.reuse_px};
+  PlannedFrame::Reuse reuse{planned.index - planned.index % kKeyFrames, *views_.reuse_px, {}};
+  reuse.margin_px = margin_of(reuse.key);
   if (reuse.key == planned.index) return reuse;
   const PlannedFrame key = alone(reuse.key);
   const core::DrawRequest& a = key.request;
@@ -153,7 +181,7 @@ std::string FilmPlan::fingerprint(const PlannedFrame& planned) const {
   FingerprintOrigin origin{planned.stereo, planned.carried_gap_px, {}};
   if (planned.reuse)
     origin.reuse = {fingerprint_of(basis, alone(planned.reuse->key).request, planned.settings),
-                    planned.reuse->most_added_px};
+                    planned.reuse->most_added_px, planned.reuse->margin_px};
   return fingerprint_of(basis, planned.request, planned.settings, planned.time_s, origin);
 }
 

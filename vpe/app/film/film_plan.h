@@ -53,6 +53,7 @@ struct PlannedFrame {
   struct Reuse {
     std::int64_t key = 0;      // index in the flight
     double most_added_px = 0;  // CarriedDrawerOptions::most_added_px
+    glm::ivec2 margin_px{};    // of the key frame, CarriedDrawer::draw_first()
   };
   std::optional<Reuse> reuse;  // absent: drawn in full, and no frame takes its pixels
 
@@ -119,6 +120,9 @@ class FilmPlan {
   PlannedFrame alone(std::int64_t frame) const;
   std::optional<PlannedFrame::Reuse> reuse_of(const PlannedFrame& planned) const;
   std::string fingerprint(const PlannedFrame& planned) const;
+  core::View view_of(const scripts::FlightState& state) const;
+  // Returns the margin with which a key frame shows what the frames after it do.
+  glm::ivec2 margin_of(std::int64_t key) const;
   std::optional<core::StereoPair> stereo_of(const scripts::FlightState& state, double time_s) const;
 
   RenderBasis basis_;

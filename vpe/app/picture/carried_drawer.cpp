@@ -9,6 +9,7 @@
 #include "paging/surface/distance.h"
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/image/edge_filter.h"
+#include "vpe/core/margin.h"
 #include "vpe/core/ray_lengths.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/voxel/ray_request.h"
@@ -95,12 +96,20 @@ void CarriedDrawer::finish(const core::DrawRequest& request, core::Frame& frame)
   if (!request.want_range) frame.range_m = {};
 }
 
-core::DrawResult CarriedDrawer::draw_first(const core::DrawRequest& request) {
+core::DrawResult CarriedDrawer::draw_first(const core::DrawRequest& request, glm::ivec2 margin_px) {
   has_first_ = false;
-  core::DrawResult result = renderer_.draw(raw(request));
-  view_ = request.view;
-  raw_ = result.frame;
+  core::DrawRequest wide = raw(request);
+  wide.view = core::with_margin(request.view, margin_px);
+  core::DrawResult result = renderer_.draw(wide);
+  result.certificate.corner_stretch = core::corner_stretch(request.view);
+  view_ = wide.view;
   certificate_ = result.certificate;
+  if (margin_px == glm::ivec2(0)) {
+    raw_ = result.frame;
+  } else {
+    raw_ = std::move(result.frame);
+    result.frame = core::without_margin(raw_, margin_px);
+  }
   has_first_ = true;
   finish(request, result.frame);
   return result;

@@ -53,8 +53,10 @@ class CarriedDrawer {
   CarriedDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
                 const CarriedDrawerOptions& options);
 
-  // Draws an image in full: the image that `renderer` draws, to the bit where it draws rays.
-  core::DrawResult draw_first(const core::DrawRequest& request);
+  // Draws an image in full: the image that `renderer` draws, to the bit where it draws rays. With a margin, pixels on each
+  // side, more than the image is drawn (core::with_margin), so that less is left of the images that are carried from it;
+  // then ranges are the same but for rounding.
+  core::DrawResult draw_first(const core::DrawRequest& request, glm::ivec2 margin_px = {0, 0});
 
   // Draws an image by carrying the last first one. Its certificate has the larger bounds of the first image's and of the
   // pixels that were drawn, and what carrying adds. Draws all pixels if either camera is below the ground, or by

@@ -57,7 +57,10 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
     if (origin.stereo->convergence_m > 0) digest.add("convergence").add(origin.stereo->convergence_m);
   }
   if (origin.carried_gap_px) digest.add("carried").add(*origin.carried_gap_px);
-  if (origin.reuse) digest.add("reuse").add(origin.reuse->key).add(origin.reuse->most_added_px);
+  if (origin.reuse) {
+    digest.add("reuse").add(origin.reuse->key).add(origin.reuse->most_added_px);
+    digest.add(std::int64_t{origin.reuse->margin_px.x}).add(std::int64_t{origin.reuse->margin_px.y});
+  }
   return digest.hex();
 }
 

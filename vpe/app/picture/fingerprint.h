@@ -26,6 +26,7 @@ struct FingerprintOrigin {
   struct Reuse {
     std::string key;  // its fingerprint
     double most_added_px = 0;
+    glm::ivec2 margin_px{};  // of the key frame
   };
   std::optional<Reuse> reuse;
 };
