@@ -71,6 +71,9 @@ TEST(Margin, IsCutOff) {
   EXPECT_EQ(inner.height, 2);
   EXPECT_EQ(inner.range_m, (std::vector<float>{6, 7, 8, 11, 12, 13}));
   EXPECT_EQ(inner.colour[3].r, 11);
+  const RgbImage image = without_margin(RgbImage{5, 4, frame.colour}, {1, 1});
+  EXPECT_EQ(image.width, 3);
+  EXPECT_EQ(image.pixels, inner.colour);
   frame.colour.clear();
   EXPECT_TRUE(without_margin(frame, {1, 1}).colour.empty());
 }

@@ -160,6 +160,25 @@ TEST_F(MovedImageTest, StandsStillUnderAFixedOverlay) {
   settle();
 }
 
+// A camera that turns on has its images drawn with a margin, so that their border is not seen.
+TEST_F(MovedImageTest, ImagesHaveAMarginWhileTheCameraTurns) {
+  open_with(explore::Warp::kGrid, core::Backend::kRay, std::chrono::milliseconds(60));
+  EXPECT_EQ(window_->drawn()->request.margin_px, glm::ivec2(0));
+  robot_->key_down("Left");
+  int widest = 0;
+  for (int n = 0; n < 5000 && widest < 4; ++n) {
+    ASSERT_TRUE(window_->step(0.02));
+    widest = std::max(widest, window_->drawn()->request.margin_px.x);
+    const core::View& view = window_->drawn()->request.draw.view;
+    ASSERT_EQ(window_->image().width, view.width);
+    ASSERT_EQ(window_->image().height, view.height);
+  }
+  robot_->key_up("Left");
+  EXPECT_GE(widest, 4);
+  settle();
+  EXPECT_EQ(window_->drawn()->request.margin_px, glm::ivec2(0));
+}
+
 TEST_F(MovedImageTest, SlowImagesHaveSeveralFramesEachAndARestHasNone) {
   open_with(explore::Warp::kGrid, core::Backend::kRay, std::chrono::milliseconds(200));
   const std::int64_t images_before = window_->images();

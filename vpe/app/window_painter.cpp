@@ -5,6 +5,7 @@
 
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/stereo_render.h"
+#include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/window/moved_image.h"
 
@@ -108,6 +109,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     drawn.result.settled = drawn.result.settled && pair.right.settled && !has_other_palette;
     return drawn;
   }
+  draw_request.view = core::with_margin(draw_request.view, request.margin_px);
   drawn.result = draw_one(draw_request);
   drawn.result.settled = drawn.result.settled && !has_other_palette;
   core::Frame& frame = drawn.result.frame;

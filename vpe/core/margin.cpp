@@ -38,19 +38,35 @@ glm::ivec2 margin_for(const View& view, std::span<const View> others, double nea
   return glm::ceil(glm::max(glm::min(beyond, most) - kRounding_px, 0.0));
 }
 
-Frame without_margin(const Frame& frame, glm::ivec2 margin_px) {
-  Frame out{frame.width - 2 * margin_px.x, frame.height - 2 * margin_px.y, {}, {}};
-  const auto crop = [&](const auto& from, auto& to) {
-    if (from.empty()) return;
-    to.reserve(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height));
-    for (int y = 0; y < out.height; ++y) {
-      const auto row = from.begin() + static_cast<std::ptrdiff_t>(y + margin_px.y) * frame.width + margin_px.x;
-      to.insert(to.end(), row, row + out.width);
-    }
-  };
-  crop(frame.colour, out.colour);
-  crop(frame.range_m, out.range_m);
+namespace {
+
+// Returns the values of an image of `width` without those of its margin; nothing if there are none.
+template <class T>
+std::vector<T> inner(const std::vector<T>& values, int width, int height, glm::ivec2 margin_px) {
+  std::vector<T> out;
+  if (values.empty()) return out;
+  const int columns = width - 2 * margin_px.x;
+  const int rows = height - 2 * margin_px.y;
+  out.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (int y = 0; y < rows; ++y) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(y + margin_px.y) * width + margin_px.x;
+    out.insert(out.end(), row, row + columns);
+  }
   return out;
+}
+
+}  // namespace
+
+Frame without_margin(const Frame& frame, glm::ivec2 margin_px) {
+  return {frame.width - 2 * margin_px.x, frame.height - 2 * margin_px.y,
+          inner(frame.colour, frame.width, frame.height, margin_px),
+          inner(frame.range_m, frame.width, frame.height, margin_px)};
+}
+
+RgbImage without_margin(RgbImage image, glm::ivec2 margin_px) {
+  if (margin_px == glm::ivec2(0)) return image;
+  return {image.width - 2 * margin_px.x, image.height - 2 * margin_px.y,
+          inner(image.pixels, image.width, image.height, margin_px)};
 }
 
 }  // namespace vpe::core

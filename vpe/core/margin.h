@@ -5,6 +5,7 @@
 #include <span>
 
 #include "vpe/core/frame.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -18,7 +19,8 @@ View with_margin(const View& view, glm::ivec2 margin_px);
 // `nearest_m` and for those at infinity. Perspective views.
 glm::ivec2 margin_for(const View& view, std::span<const View> others, double nearest_m, glm::ivec2 most_px);
 
-// Returns the frame without a margin.
+// Return the frame or the image without a margin.
 Frame without_margin(const Frame& frame, glm::ivec2 margin_px);
+RgbImage without_margin(RgbImage image, glm::ivec2 margin_px);
 
 }  // namespace vpe::core

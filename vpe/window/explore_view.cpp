@@ -1,17 +1,39 @@
 // The view of the explore window: its images, and marks over them.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "vpe/base/number.h"
+#include "vpe/core/margin.h"
 #include "vpe/explore/foresight.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/marks/flight_marks.h"
 #include "vpe/window/marks/pivot_mark.h"
 
 namespace vpe::window {
+
+namespace {
+
+// An image is expected so much later than it is requested.
+constexpr double kSoonest_s = 0.02;
+constexpr double kLatest_s = 0.5;
+// Its margin is this part of its sides at most. Wider: slower images; narrower: their border is seen in quick turns.
+constexpr int kMostMargin = 12;
+
+// Returns true if something lies over images at a fixed place.
+bool has_fixed_overlay(const core::Overlays& o) {
+  return o.legend || o.scale_bar || o.north_arrow || o.time_code || !o.title.empty() ||
+         o.compass != core::CompassStrip::kOff;
+}
+
+core::View sized(core::View view, const core::RgbImage& image) {
+  view.width = image.width;
+  view.height = image.height;
+  return view;
+}
+
+}  // namespace
 
 void ExploreWindow::request_image() {
   const explore::DrawChoice chosen =
@@ -43,7 +65,11 @@ void ExploreWindow::request_image() {
   request.draw.paging.wait = false;
   request.draw.want_rough_range = setup_.preferences.warp != explore::Warp::kOff && !chosen.stereo;
   request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry;
-  request.draw.paging.upcoming = foreseen_views(next->view);
+  const double soon_s = std::clamp(2 * (drawn_ ? drawn_->seconds : 0), kSoonest_s, kLatest_s);
+  const std::vector<core::View> soon = foreseen_views(next->view, soon_s, request.draw.paging.upcoming);
+  if (request.draw.want_rough_range && !recorder_.is_recording() && !has_fixed_overlay(request.draw.settings))
+    request.margin_px = core::margin_for(next->view, soon, std::max(session_.height_m(), 1.0),
+                                         glm::ivec2(next->view.width, next->view.height) / kMostMargin);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
       core::backend_for(chosen.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
@@ -66,24 +92,27 @@ void ExploreWindow::request_image() {
 }
 
 // From the flight that plays, else from the motion since the last request.
-std::vector<core::View> ExploreWindow::foreseen_views(const core::View& shown) {
-  constexpr std::array kAhead_s{0.5, 1.0};
-  std::vector<core::View> views;
-  const auto add = [&](const mars::CameraPose& camera) { views.emplace_back(shown).camera = camera; };
+std::vector<core::View> ExploreWindow::foreseen_views(const core::View& shown, double soon_s,
+                                                      std::vector<core::View>& later) {
   const double at_s = now_s();
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
-  if (flight != nullptr && flight->is_playing()) {
-    for (const double ahead_s : kAhead_s)
-      add(flight->state_at(flight->time_s() + ahead_s * flight->speed()).camera);
-  } else if (flight == nullptr && last_pose_ && at_s > last_pose_->first) {
-    for (const double ahead_s : kAhead_s) {
-      const auto pose =
-          explore::foreseen({last_pose_->second, session_.pose(), at_s - last_pose_->first}, ahead_s);
-      if (pose) add(mars::to_camera(*pose, session_.ground().radius_m));
+  const auto add = [&](double ahead_s, std::vector<core::View>& views) {
+    if (flight != nullptr) {
+      if (flight->is_playing())
+        views.emplace_back(shown).camera =
+            flight->state_at(flight->time_s() + ahead_s * flight->speed()).camera;
+      return;
     }
-  }
+    if (!last_pose_ || at_s <= last_pose_->first) return;
+    const auto pose =
+        explore::foreseen({last_pose_->second, session_.pose(), at_s - last_pose_->first}, ahead_s);
+    if (pose) views.emplace_back(shown).camera = mars::to_camera(*pose, session_.ground().radius_m);
+  };
+  std::vector<core::View> soon;
+  add(soon_s, soon);
+  for (const double ahead_s : {0.5, 1.0}) add(ahead_s, later);
   last_pose_ = {at_s, session_.pose()};
-  return views;
+  return soon;
 }
 
 bool ExploreWindow::take_image() {
@@ -102,13 +131,15 @@ bool ExploreWindow::take_image() {
     show_message(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
   view_texture_.upload(drawn->image);
+  const glm::ivec2 margin_px = drawn->request.margin_px;
   finer_.begin();  // not before: it would delay the first image
   ++images_;
-  last_image_ = std::move(drawn->image);
-  drawn_ = std::move(*drawn);
   moved_image_.forget();
-  if (!drawn_->range_m.empty())
-    moved_image_.take({last_image_.width, last_image_.height, last_image_.pixels, std::move(drawn_->range_m)});
+  if (!drawn->range_m.empty())
+    moved_image_.take(
+        {drawn->image.width, drawn->image.height, drawn->image.pixels, std::move(drawn->range_m)});
+  last_image_ = core::without_margin(std::move(drawn->image), margin_px);
+  drawn_ = std::move(*drawn);
   image_times_s_.push_back(drawn_->seconds);
   if (image_times_s_.size() > 20) image_times_s_.pop_front();
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
@@ -177,10 +208,7 @@ bool ExploreWindow::lags() const {
   if (!drawn_ || !drawn_->grid || setup_.preferences.warp == explore::Warp::kOff || chooser_.choice().stereo ||
       guide_.inside() != nullptr || state_.large_map || !state_.image_error.empty())
     return false;
-  const core::Overlays& o = session_.settings().values();
-  const bool has_fixed = o.legend || o.scale_bar || o.north_arrow || o.time_code || !o.title.empty() ||
-                         o.compass != core::CompassStrip::kOff;
-  return !has_fixed && !is_same_sight(drawn_->request.draw.view, session_.view());
+  return !has_fixed_overlay(session_.settings().values()) && !is_same_sight(drawn_->request.draw.view, session_.view());
 }
 
 void ExploreWindow::draw_view() {
@@ -196,9 +224,13 @@ void ExploreWindow::draw_view() {
   if (lags()) {
     moved_image_.draw(list, view_texture_.id(), area, *drawn_->grid, session_.view(), setup_.preferences.warp);
     if (setup_.preferences.warp == explore::Warp::kCarry)
-      moved_image_.draw_carried(list, area, drawn_->request.draw.view, session_.view(), session_.height_m());
+      moved_image_.draw_carried(list, area, drawn_->grid->view(), sized(session_.view(), last_image_),
+                                session_.height_m());
   } else {
-    list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
+    const glm::dvec2 edge =
+        glm::dvec2(drawn_->request.margin_px) / glm::dvec2(view_texture_.width(), view_texture_.height());
+    list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height),
+                  at(edge.x, edge.y), at(1 - edge.x, 1 - edge.y));
   }
   shown_view_ = lags() ? session_.view() : drawn_->request.draw.view;
   // Images of the terrain come first: few frames are shown between quick ones.

@@ -255,7 +255,8 @@ class ExploreWindow {
   std::optional<mars::LonLat> pointed_place() const;
   bool handle_panel_keys(const Event& event);
   void request_image();
-  std::vector<core::View> foreseen_views(const core::View& shown);
+  std::vector<core::View> foreseen_views(const core::View& shown, double soon_s,
+                                         std::vector<core::View>& later);
   bool take_image();  // returns true if there is a new one
   double event_wait_s(bool moves, double rest_s) const;
   bool is_over_view() const;

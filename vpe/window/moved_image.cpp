@@ -49,13 +49,11 @@ void MovedImage::draw(ImDrawList& list, void* texture, const ViewArea& area, con
   list.PopClipRect();
 }
 
-void MovedImage::draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from, core::View to,
-                              double height_m) {
+void MovedImage::draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from,
+                              const core::View& to, double height_m) {
   if (image_.range_m.empty()) return;
   // The ground may be nearer beside the image than below the camera; what that hides is seen until the next image.
   constexpr double kOfHeight = 0.5;
-  to.width = from.width;
-  to.height = from.height;
   if (!warp::check_carry(from, to).empty()) return;
   if (!pool_) pool_.emplace(0);
   warp::CarryOptions options;

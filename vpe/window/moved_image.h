@@ -37,7 +37,7 @@ class MovedImage {
   // Adds the taken image, drawn as `from` sees it, pixel by pixel as `to` sees its ground; pixels of which nothing is known
   // are transparent, so that the grid shows there. `height_m` of the camera above the ground. Draws nothing where no image
   // was taken.
-  void draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from, core::View to,
+  void draw_carried(ImDrawList& list, const ViewArea& area, const core::View& from, const core::View& to,
                     double height_m);
 
  private:

@@ -30,16 +30,19 @@ struct ImageRequest {
   double flight_time_s = 0;        // for the overlay of that name
   std::optional<double> logged_s;  // its time in the log while a session is recorded
   bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is a grid
+  // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
+  // until it is shown; not with stereo.
+  glm::ivec2 margin_px{0, 0};
 };
 
 // Holds the result of a request.
 struct DrawnImage {
   ImageRequest request;
-  core::RgbImage image;  // in stereo of another size than the view; empty after an error
+  core::RgbImage image;  // with its margin; in stereo of another size than the view; empty after an error
   // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
   // larger bound.
   core::DrawResult result;
-  // The image as a grid that follows the camera; absent unless the request wants rough ranges and there are some.
+  // The image with its margin as a grid that follows the camera; absent unless the request wants rough ranges and there are some.
   std::optional<warp::ImageGrid> grid;
   std::vector<float> range_m;  // of its pixels, as core::Frame::range_m; empty unless the request keeps it
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
