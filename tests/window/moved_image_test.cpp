@@ -61,9 +61,9 @@ class MovedImageTest : public ExploreWindowTest {
     ExploreWindowTest::TearDown();
   }
   void open_with(explore::Warp warp, core::Backend backend = core::Backend::kRay,
-                 std::chrono::milliseconds wait = std::chrono::milliseconds(0)) {
+                 std::chrono::milliseconds wait = std::chrono::milliseconds(0), bool panels = false) {
     extra_.preferences.warp = warp;
-    extra_.panels = false;
+    extra_.panels = panels;
     extra_.session.start = start_;
     ASSERT_EQ(extra_.session.settings.set("exaggeration", "20"), "");
     wrap_painter_ = [this, wait](std::unique_ptr<Painter> painter) -> std::unique_ptr<Painter> {
@@ -85,9 +85,10 @@ class MovedImageTest : public ExploreWindowTest {
     return image;
   }
   // Draws what the window should show.
-  core::RgbImage truth() const {
+  core::RgbImage truth() const { return truth(window_->session().view()); }
+  core::RgbImage truth(const core::View& view) const {
     core::DrawRequest request;
-    request.view = window_->session().view();
+    request.view = view;
     request.settings = window_->session().settings().values();
     request.sun = app::sun_for(request.settings, window_->session().pose());
     core::Frame frame = voxel::make_ray_renderer(planet_, {std::size_t{64} << 20, 2})->draw(request).frame;
@@ -141,9 +142,38 @@ TEST_F(MovedImageTest, FollowsTheCameraUntilTheNextImageIsThere) {
   }
 }
 
+// Each eye of a pair is where it should be; red-cyan pairs stand still, as both images are one.
+TEST_F(MovedImageTest, PairsFollowEyeByEye) {
+  for (const auto& [name, layout] : {std::pair{"side by side", core::StereoLayout::kSideBySide},
+                                     std::pair{"over and under", core::StereoLayout::kOverUnder},
+                                     std::pair{"red and cyan", core::StereoLayout::kAnaglyph}}) {
+    open_with(explore::Warp::kGrid, core::Backend::kRay, {}, true);
+    click("View");
+    iterate(2);
+    click("##eyes");
+    click(std::string("##eyes=") + name);
+    key("h");  // nothing lies over the view
+    settle();
+    ASSERT_EQ(window_->drawn()->request.stereo, layout);
+    const core::RgbImage before = window_->image();
+    const double base_m = window_->drawn()->request.eye_base_m;
+    const core::RgbImage shown = shown_at({20, 10, 900'000, 36, -57, 2});
+    const auto eye = [&](double aside_m) {
+      return truth(core::eye_view(window_->session().view(), aside_m, {}));
+    };
+    const core::RgbImage wanted = core::combine_stereo(eye(-base_m / 2), eye(base_m / 2), layout);
+    const double still = difference(before, wanted);
+    EXPECT_GT(still, 1.5);
+    const double share = difference(shown, wanted) / still;
+    EXPECT_EQ(share < 0.4, layout != core::StereoLayout::kAnaglyph) << name << " " << share;
+    settle();
+    window_.reset();
+  }
+}
+
 TEST_F(MovedImageTest, StandsStillWhereThatIsWanted) {
   open_with(explore::Warp::kOff);
-  EXPECT_FALSE(window_->drawn()->grid);
+  EXPECT_TRUE(window_->drawn()->grids.empty());
   const core::RgbImage before = window_->image();
   const core::RgbImage shown = shown_at({20, 10, 900'000, 36, -57, 2});
   EXPECT_LT(difference(shown, before), 0.5);

@@ -52,6 +52,7 @@ struct ExploreArguments {
   bool restores_overlays = true;  // those of the last session
   bool names_backend = false;     // else that of the last session
   bool names_fov = false;         // else that of a project
+  StereoMethod stereo;
   RenderOptions image;
 };
 
@@ -237,11 +238,12 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   return setup;
 }
 
-window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> planet, const Common& common) {
+window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> planet, const Common& common,
+                                 const StereoMethod& stereo) {
   constexpr std::size_t kSurfaceShare = 8;
   auto surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
   return {planet, std::move(surface),
-          [planet, common] { return std::make_unique<WindowPainter>(planet, common); }};
+          [planet, common, stereo] { return std::make_unique<WindowPainter>(planet, common, stereo); }};
 }
 
 // Writes the session file; the scale of letters only if the command line does not say one. Returns "", or what went wrong; there is no file if there is no folder for it.
@@ -303,13 +305,13 @@ void explore(const ExploreArguments& given, const Common& common) {
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
     is_first = false;
-    static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common);
+    static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common, arguments.stereo);
     if (std::exchange(is_coarse, false)) {
-      setup.make_finer = [common](const std::stop_token& stop,
+      setup.make_finer = [common, stereo = arguments.stereo](const std::stop_token& stop,
                                   const window::TellProgress& tell) -> std::optional<window::ShownPlanet> {
         auto complete = build_embedded_planet(common, stop, tell);
         if (complete == nullptr) return std::nullopt;
-        return shown_planet(std::move(complete), common);
+        return shown_planet(std::move(complete), common, stereo);
       };
     }
     add_places(planet->meta(), setup);
@@ -386,6 +388,7 @@ void add_explore(CLI::App& program, Common& common) {
       "--log", arguments->log,
       "Record the session as a flight, with zoom, backend, stereo and window size; panoramas as comments");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and exit");
+  add_method_options(*command, arguments->stereo);
   add_render_options(*command, arguments->image);
   add_examples(*command,
                {{"the whole planet", "vpe explore mars.vpe"},

@@ -4,18 +4,42 @@
 #include <utility>
 
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/stereo_render.h"
 #include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/window/moved_image.h"
 
 namespace vpe::app {
 
-WindowPainter::WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common)
-    : planet_(planet), common_(std::move(common)), overlays_(std::move(planet)) {}
+namespace {
 
-core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double time_s) {
-  core::DrawResult result = renderer_->draw(request);
+// Carrying has this part of the memory.
+constexpr std::size_t kCarryingShare = 8;
+
+}  // namespace
+
+WindowPainter::WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common,
+                             StereoMethod stereo)
+    : planet_(planet), common_(std::move(common)), overlays_(std::move(planet)), stereo_(std::move(stereo)) {}
+
+CarriedDrawer* WindowPainter::drawer_for(const core::DrawRequest& request, Eye eye) {
+  if (eye == Eye::kMiddle || !stereo_.carries() || backend_ != core::Backend::kRay ||
+      !why_not_carried(request).empty())
+    return nullptr;
+  if (!carried_) {
+    carried_ = std::make_unique<CarriedDrawer>(
+        *renderer_, planet_,
+        CarriedDrawerOptions{.gap_px = stereo_.gap_px,
+                             .memory_bytes = memory_bytes(common_) / kCarryingShare,
+                             .threads = common_.threads});
+  }
+  return carried_.get();
+}
+
+core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double time_s, Eye eye) {
+  CarriedDrawer* const drawer = drawer_for(request, eye);
+  core::DrawResult result = drawer == nullptr    ? renderer_->draw(request)
+                            : eye == Eye::kRight ? drawer->draw_carried(request)
+                                                 : drawer->draw_first(request);
   if (!overlay::any(request.settings)) return result;
   overlays_.load(request.settings);
   const FrameGround ground{result.frame.range_m, result.certificate, {}};
@@ -56,6 +80,16 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
   return !is_same(*palette_of_, now);
 }
 
+namespace {
+
+// Adds the image of an eye as a grid, if it has ranges.
+void add_grid(const core::DrawRequest& request, const core::DrawResult& result, window::DrawnImage& drawn) {
+  if (!request.want_rough_range || result.frame.range_m.empty() || result.certificate.is_below_ground) return;
+  drawn.grids.emplace_back(request.view, result.frame.range_m, window::kMovedCells);
+}
+
+}  // namespace
+
 core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance) {
   core::SettingsValues& values = request.settings;
   if (values.ray_mode != core::RayMode::kExact) return request;
@@ -73,11 +107,30 @@ window::ImageRequest as_drawn(window::ImageRequest request) {
   return request;
 }
 
+void WindowPainter::draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
+                              window::DrawnImage& drawn) {
+  StereoArguments stereo;
+  stereo.layout = core::to_string(*request.stereo);
+  stereo.eye_base_m = request.eye_base_m;
+  stereo.convergence_m = request.convergence_m;
+  StereoImage pair = draw_stereo(stereo, draw_request, [&](const core::DrawRequest& one, Eye eye) {
+    core::DrawResult result = draw(one, request.flight_time_s, eye);
+    if (eye != Eye::kMiddle) add_grid(one, result, drawn);
+    return result;
+  });
+  drawn.image = std::move(pair.image);
+  drawn.result = std::move(pair.left);
+  if (pair.right.certificate.shift_bound_px > drawn.result.certificate.shift_bound_px)
+    drawn.result.certificate = pair.right.certificate;
+  drawn.result.settled = drawn.result.settled && pair.right.settled;
+}
+
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   window::ImageRequest as_asked = as_drawn(request);
   const core::Backend backend = as_asked.backend;
   const bool changes = backend_ && backend_ != backend;
   if (backend_ != backend) {
+    carried_.reset();
     renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
     RenderOptions options;
@@ -94,28 +147,17 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;
   const bool has_other_palette = take_palette(draw_request, drawn);
-  const auto draw_one = [&](const core::DrawRequest& one) { return draw(one, request.flight_time_s); };
   if (request.stereo) {
-    StereoArguments stereo;
-    stereo.layout = core::to_string(*request.stereo);
-    stereo.eye_base_m = request.eye_base_m;
-    stereo.convergence_m = request.convergence_m;
-    StereoImage pair =
-        draw_stereo(stereo, draw_request, [&](const core::DrawRequest& eye, Eye) { return draw_one(eye); });
-    drawn.image = std::move(pair.image);
-    drawn.result = std::move(pair.left);
-    if (pair.right.certificate.shift_bound_px > drawn.result.certificate.shift_bound_px)
-      drawn.result.certificate = pair.right.certificate;
-    drawn.result.settled = drawn.result.settled && pair.right.settled && !has_other_palette;
+    draw_pair(request, draw_request, drawn);
+    drawn.result.settled = drawn.result.settled && !has_other_palette;
     return drawn;
   }
   draw_request.view = core::with_margin(draw_request.view, request.margin_px);
-  drawn.result = draw_one(draw_request);
+  drawn.result = draw(draw_request, request.flight_time_s);
   drawn.result.settled = drawn.result.settled && !has_other_palette;
   core::Frame& frame = drawn.result.frame;
-  if (request.draw.want_rough_range && !frame.range_m.empty() && !drawn.result.certificate.is_below_ground)
-    drawn.grid.emplace(draw_request.view, frame.range_m, window::kMovedCells);
-  if (request.keeps_ranges && drawn.grid) drawn.range_m = std::move(frame.range_m);
+  add_grid(draw_request, drawn.result, drawn);
+  if (request.keeps_ranges && !drawn.grids.empty()) drawn.range_m = std::move(frame.range_m);
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};
   return drawn;

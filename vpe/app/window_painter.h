@@ -6,7 +6,9 @@
 
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/frame_overlays.h"
+#include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/window/workers/painter.h"
 
@@ -25,12 +27,17 @@ window::ImageRequest as_drawn(window::ImageRequest request);
 // kChange_s at most, so that the window shows the former image until then. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
-  WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common);
+  // `stereo` says how second eyes are drawn by rays; triangles draw them in full.
+  WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common, StereoMethod stereo = {});
   window::DrawnImage paint(const window::ImageRequest& request) override;
   static constexpr double kChange_s = 1.5;
 
  private:
-  core::DrawResult draw(const core::DrawRequest& request, double time_s);
+  core::DrawResult draw(const core::DrawRequest& request, double time_s, Eye eye = Eye::kMiddle);
+  // Returns what carries second eyes, or null if they are drawn in full.
+  CarriedDrawer* drawer_for(const core::DrawRequest& request, Eye eye);
+  void draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
+                 window::DrawnImage& drawn);
   bool take_palette(core::DrawRequest& request, window::DrawnImage& drawn);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -38,6 +45,8 @@ class WindowPainter : public window::Painter {
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
+  StereoMethod stereo_;
+  std::unique_ptr<CarriedDrawer> carried_;  // of renderer_, once it is needed
 
   // The palette by the view: what its ends were taken from, and the view of the request before.
   struct Sight {

@@ -63,11 +63,14 @@ void ExploreWindow::request_image() {
   request.draw.coarsening = next->multiplier;
   request.draw.keeps_levels = true;
   request.draw.paging.wait = false;
-  request.draw.want_rough_range = setup_.preferences.warp != explore::Warp::kOff && !chosen.stereo;
-  request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry;
+  // In red-cyan the images of both eyes are one.
+  request.draw.want_rough_range =
+      setup_.preferences.warp != explore::Warp::kOff && chosen.stereo != core::StereoLayout::kAnaglyph;
+  request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry && !chosen.stereo;
   const double soon_s = std::clamp(2 * (drawn_ ? drawn_->seconds : 0), kSoonest_s, kLatest_s);
   const std::vector<core::View> soon = foreseen_views(next->view, soon_s, request.draw.paging.upcoming);
-  if (request.draw.want_rough_range && !recorder_.is_recording() && !has_fixed_overlay(request.draw.settings))
+  if (request.draw.want_rough_range && !chosen.stereo && !recorder_.is_recording() &&
+      !has_fixed_overlay(request.draw.settings))
     request.margin_px = core::margin_for(next->view, soon, std::max(session_.height_m(), 1.0),
                                          glm::ivec2(next->view.width, next->view.height) / kMostMargin);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
@@ -205,10 +208,12 @@ void ExploreWindow::find_cursor() {
 // Returns true if the image is to follow the camera, which has moved since: what lies over the image at fixed places would
 // move with it.
 bool ExploreWindow::lags() const {
-  if (!drawn_ || !drawn_->grid || setup_.preferences.warp == explore::Warp::kOff || chooser_.choice().stereo ||
-      guide_.inside() != nullptr || state_.large_map || !state_.image_error.empty())
+  if (!drawn_ || drawn_->grids.empty() || setup_.preferences.warp == explore::Warp::kOff ||
+      drawn_->request.stereo != chooser_.choice().stereo || guide_.inside() != nullptr || state_.large_map ||
+      !state_.image_error.empty())
     return false;
-  return !has_fixed_overlay(session_.settings().values()) && !is_same_sight(drawn_->request.draw.view, session_.view());
+  return !has_fixed_overlay(session_.settings().values()) &&
+         !is_same_sight(drawn_->request.draw.view, session_.view());
 }
 
 void ExploreWindow::draw_view() {
@@ -222,10 +227,7 @@ void ExploreWindow::draw_view() {
   const ViewArea area =
       drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
   if (lags()) {
-    moved_image_.draw(list, view_texture_.id(), area, *drawn_->grid, session_.view(), setup_.preferences.warp);
-    if (setup_.preferences.warp == explore::Warp::kCarry)
-      moved_image_.draw_carried(list, area, drawn_->grid->view(), sized(session_.view(), last_image_),
-                                session_.height_m());
+    draw_moved(list);
   } else {
     const glm::dvec2 edge =
         glm::dvec2(drawn_->request.margin_px) / glm::dvec2(view_texture_.width(), view_texture_.height());
@@ -244,6 +246,21 @@ void ExploreWindow::draw_view() {
     draw_marks(list, eye);
     list.PopClipRect();
   }
+}
+
+// Draws the last image of each eye as that eye sees it now.
+void ExploreWindow::draw_moved(ImDrawList& list) {
+  const ImageLayout layout = image_layout();
+  const glm::ivec2 counts = layout.counts();
+  const glm::vec2 size = 1.0F / glm::vec2(counts);
+  for (int n = 0; n < std::min(layout.eyes(), static_cast<int>(drawn_->grids.size())); ++n) {
+    const glm::ivec2 place(n % counts.x, n / counts.x);
+    moved_image_.draw(list, {view_texture_.id(), glm::vec2(place) * size, size}, layout.eye_area(n),
+                      drawn_->grids[static_cast<std::size_t>(n)], eye_image(n).view, setup_.preferences.warp);
+  }
+  if (setup_.preferences.warp == explore::Warp::kCarry && layout.eyes() == 1)
+    moved_image_.draw_carried(list, layout.image_area(), drawn_->grids.front().view(),
+                              sized(session_.view(), last_image_), session_.height_m());
 }
 
 void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {

@@ -121,7 +121,7 @@ double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
   if (guide_.inside() != nullptr) return !guide_.inside()->is_at_rest() || frames_due_ > 0 ? pause_s : rest_s;
   if (frames_due_ > 0) return std::max(pause_s, next_frame_s_ - now_s());
   if (!maker_->is_idle()) {
-    const bool follows = lags() || (moves && drawn_ && drawn_->grid);
+    const bool follows = lags() || (moves && drawn_ && !drawn_->grids.empty());
     return follows ? std::max(pause_s, next_moved_s_ - now_s()) : std::min(rest_s, kImageWait_s);
   }
   return moves || live_.state() != lod::RefinementState::kWaiting ? pause_s : rest_s;

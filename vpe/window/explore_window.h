@@ -237,6 +237,7 @@ class ExploreWindow {
   bool step_overlook(const DeviceReading& input, double dt_s);
   void leave_overlook();
   void draw_view();
+  void draw_moved(ImDrawList& list);
   void draw_marks(ImDrawList& list, const EyeImage& eye);
   void draw_side();
   void draw_tabs();

@@ -14,8 +14,8 @@ bool is_same_sight(const core::View& a, const core::View& b) {
          x.right == y.right && a.fov_deg == b.fov_deg;
 }
 
-void MovedImage::draw(ImDrawList& list, void* texture, const ViewArea& area, const warp::ImageGrid& grid,
-                      const core::View& to, explore::Warp warp) {
+void MovedImage::draw(ImDrawList& list, const TexturePart& image, const ViewArea& area,
+                      const warp::ImageGrid& grid, const core::View& to, explore::Warp warp) {
   grid.move(to, moved_);
   if (warp == explore::Warp::kPolynomial) {
     if (const auto motion = warp::fit_motion(grid, moved_)) {
@@ -28,12 +28,12 @@ void MovedImage::draw(ImDrawList& list, void* texture, const ViewArea& area, con
   const std::vector<glm::ivec2> cells = warp::far_to_near(grid, moved_);
   if (cells.empty()) return;
   list.PushClipRect(at(area.x, area.y), at(area.x + area.width, area.y + area.height), true);
-  list.PushTextureID(texture);
+  list.PushTextureID(image.texture);
   list.PrimReserve(static_cast<int>(6 * cells.size()), static_cast<int>(moved_.size()));
   const auto first = list._VtxCurrentIdx;
   for (std::size_t n = 0; n < moved_.size(); ++n) {
     const glm::vec2 place = moved_[n].is_ahead ? moved_[n].xy_px : glm::vec2(0);
-    const glm::vec2 texel = grid.texture_at(n);
+    const glm::vec2 texel = image.low + image.size * grid.texture_at(n);
     list.PrimWriteVtx(at(area.x + static_cast<double>(place.x), area.y + static_cast<double>(place.y)),
                       {texel.x, texel.y}, IM_COL32_WHITE);
   }

@@ -23,12 +23,19 @@ inline constexpr glm::ivec2 kMovedCells{64, 36};
 // Returns true if two views see the same, whatever their size.
 bool is_same_sight(const core::View& a, const core::View& b);
 
+// A rectangle of a texture, in shares of its sides.
+struct TexturePart {
+  void* texture = nullptr;  // ImTextureID
+  glm::vec2 low{0, 0};
+  glm::vec2 size{1, 1};
+};
+
 // For the main thread. Keeps memory from frame to frame.
 class MovedImage {
  public:
-  // Adds the image of `texture`, which `grid` describes, to the list as `to` sees it. `to` has the size of `area`. Where the
+  // Adds an image, the part of a texture that `grid` describes, to the list as `to` sees it. `to` has the size of `area`. Where the
   // image does not reach, its border is continued. With Warp::kPolynomial all vertices move by fit_motion().
-  void draw(ImDrawList& list, void* texture, const ViewArea& area, const warp::ImageGrid& grid,
+  void draw(ImDrawList& list, const TexturePart& image, const ViewArea& area, const warp::ImageGrid& grid,
             const core::View& to, explore::Warp warp);
 
   // Takes an image with its ranges for draw_carried(), or none.

@@ -93,7 +93,7 @@ void CarriedDrawer::finish(const core::DrawRequest& request, core::Frame& frame)
     core::smooth_edges(frame.colour, inverse_depth_, frame.width, frame.height, pool_);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
-  if (!request.want_range) frame.range_m = {};
+  if (!request.want_range && !request.want_rough_range) frame.range_m = {};
 }
 
 core::DrawResult CarriedDrawer::draw_first(const core::DrawRequest& request, glm::ivec2 margin_px) {

@@ -29,7 +29,7 @@ struct ImageRequest {
   double convergence_m = 0;        // with stereo; where both images coincide; 0: infinitely far
   double flight_time_s = 0;        // for the overlay of that name
   std::optional<double> logged_s;  // its time in the log while a session is recorded
-  bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is a grid
+  bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is one grid
   // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
   // until it is shown; not with stereo.
   glm::ivec2 margin_px{0, 0};
@@ -42,8 +42,9 @@ struct DrawnImage {
   // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
   // larger bound.
   core::DrawResult result;
-  // The image with its margin as a grid that follows the camera; absent unless the request wants rough ranges and there are some.
-  std::optional<warp::ImageGrid> grid;
+  // The image of each eye, with its margin, as a grid that follows the camera; none unless the request wants rough ranges
+  // and there are some.
+  std::vector<warp::ImageGrid> grids;
   std::vector<float> range_m;  // of its pixels, as core::Frame::range_m; empty unless the request keeps it
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
