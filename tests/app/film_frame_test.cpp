@@ -32,7 +32,7 @@ TEST(FilmFrame, TheEyesAreInItsFingerprint) {
   using vpe::core::StereoLayout;
   const Inputs i;
   const auto of = [&](const std::optional<vpe::core::StereoPair>& stereo) {
-    return fingerprint_of(i.basis, i.request, i.settings, 0, {stereo, {}});
+    return fingerprint_of(i.basis, i.request, i.settings, 0, {stereo, {}, {}});
   };
   EXPECT_EQ(of(std::nullopt), i.fingerprint());
   std::set<std::string> seen{i.fingerprint()};
@@ -42,7 +42,12 @@ TEST(FilmFrame, TheEyesAreInItsFingerprint) {
   }
   const vpe::core::StereoPair pair{StereoLayout::kSideBySide, 1};
   for (const double gap_px : {1.0, 2.0})
-    EXPECT_TRUE(seen.insert(fingerprint_of(i.basis, i.request, i.settings, 0, {pair, gap_px})).second);
+    EXPECT_TRUE(seen.insert(fingerprint_of(i.basis, i.request, i.settings, 0, {pair, gap_px, {}})).second);
+  // A frame depends on its key frame, how far off its pixels may be, and the key frame's margin.
+  using Reuse = vpe::app::FingerprintOrigin::Reuse;
+  for (const Reuse& reuse : {Reuse{"a", 0.5, {0, 0}}, Reuse{"b", 0.5, {0, 0}}, Reuse{"a", 0.25, {0, 0}},
+                             Reuse{"a", 0.5, {4, 0}}, Reuse{"a", 0.5, {0, 4}}})
+    EXPECT_TRUE(seen.insert(fingerprint_of(i.basis, i.request, i.settings, 0, {{}, {}, reuse})).second);
 }
 
 TEST(FilmFrame, EverythingThatAnImageDependsOnIsInItsFingerprint) {

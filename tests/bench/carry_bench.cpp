@@ -1,5 +1,5 @@
 // Compares images that are carried from another one (vpe/warp) with images that are drawn in full by rays: processor time of
-// a pixel, and what is left to draw. docs/measurements/rays.md has the figures.
+// a pixel, and what is left to draw. The first image has the margin that the other view asks for. docs/measurements/rays.md has the figures.
 //
 //   carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX [CASE]]]]
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "paging/surface/distance.h"
 #include "paging/surface/surface.h"
 #include "vpe/app/picture/carried_drawer.h"
+#include "vpe/core/margin.h"
 #include "vpe/report/interleaved_timing.h"
 #include "vpe/report/processor_time.h"
 #include "vpe/voxel/ray_renderer.h"
@@ -81,8 +82,12 @@ int main(int argc, char** argv) {
     const core::DrawRequest to = request_for(one.to, radius_m, width, height);
     vpe::app::CarriedDrawer drawer(
         *rays, planet, {.most_added_px = most_added_px, .memory_bytes = std::size_t{64} << 20, .threads = 1});
-    drawer.draw_first(from);
-    const core::Frame frame = rays->draw(from).frame;
+    const std::vector<core::View> others{to.view};
+    const glm::ivec2 margin_px = core::margin_for(from.view, others, 2000, {width / 8, height / 8});
+    core::DrawRequest wide = from;
+    wide.view = core::with_margin(from.view, margin_px);
+    drawer.draw_first(from, margin_px);
+    const core::Frame frame = rays->draw(wide).frame;
     warp::CarryOptions options;
     options.most_added_px = static_cast<float>(most_added_px);
     options.nearest_m = 0.95 * paging::distance_to_ground_m(surface, to.view.camera.position_m, 1);
@@ -91,7 +96,7 @@ int main(int argc, char** argv) {
     warp::CarriedImage carried;
     const std::vector<std::function<void()>> runs{
         [&] { (void)rays->draw(to); },
-        [&] { carrier.carry(from.view, frame, to.view, options, pool, carried); },
+        [&] { carrier.carry(wide.view, frame, to.view, options, pool, carried); },
         [&] { (void)drawer.draw_carried(to); }};
     const auto timings = vpe::report::time_interleaved(runs, rounds, vpe::report::processor_s);
     const auto ns = [&](std::size_t n) { return 1e9 * timings[n].median_s() / pixels; };

@@ -69,7 +69,7 @@ class MovedImageTest : public ExploreWindowTest {
     wrap_painter_ = [this, wait](std::unique_ptr<Painter> painter) -> std::unique_ptr<Painter> {
       return std::make_unique<LatePainter>(std::move(painter), gate_, wait);
     };
-    open(640, 360, backend);
+    open(static_cast<int>(view_.width), static_cast<int>(view_.height), backend);
   }
   // Moves the camera while no image is made, and returns what the window shows then.
   core::RgbImage shown_at(const mars::Pose& pose) {
@@ -147,6 +147,7 @@ TEST_F(MovedImageTest, PairsFollowEyeByEye) {
   for (const auto& [name, layout] : {std::pair{"side by side", core::StereoLayout::kSideBySide},
                                      std::pair{"over and under", core::StereoLayout::kOverUnder},
                                      std::pair{"red and cyan", core::StereoLayout::kAnaglyph}}) {
+    view_ = {0, 0, 960, 540};  // panels need the room
     open_with(explore::Warp::kGrid, core::Backend::kRay, {}, true);
     click("View");
     iterate(2);

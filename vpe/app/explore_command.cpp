@@ -307,8 +307,9 @@ void explore(const ExploreArguments& given, const Common& common) {
     is_first = false;
     static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common, arguments.stereo);
     if (std::exchange(is_coarse, false)) {
-      setup.make_finer = [common, stereo = arguments.stereo](const std::stop_token& stop,
-                                  const window::TellProgress& tell) -> std::optional<window::ShownPlanet> {
+      setup.make_finer = [common, stereo = arguments.stereo](
+                             const std::stop_token& stop,
+                             const window::TellProgress& tell) -> std::optional<window::ShownPlanet> {
         auto complete = build_embedded_planet(common, stop, tell);
         if (complete == nullptr) return std::nullopt;
         return shown_planet(std::move(complete), common, stereo);

@@ -13,4 +13,10 @@ void keep_heap_compact() {
 #endif
 }
 
+void return_freed_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
 }  // namespace vpe::base

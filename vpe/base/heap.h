@@ -14,4 +14,8 @@ inline constexpr std::size_t kOwnBlockBytes = std::size_t{64} << 10;
 // number of times. Does nothing where the C library has no such option.
 void keep_heap_compact();
 
+// Returns memory that was freed to the system, as after motion through many tiles. May take milliseconds. Any thread may
+// call it. Does nothing where the C library has no such function.
+void return_freed_memory();
+
 }  // namespace vpe::base

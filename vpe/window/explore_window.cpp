@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "vpe/base/heap.h"
 #include "vpe/window/panels/overlay_bar.h"
 
 namespace vpe::window {
@@ -127,6 +128,18 @@ double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
   return moves || live_.state() != lod::RefinementState::kWaiting ? pause_s : rest_s;
 }
 
+// Returns freed memory to the system once the view has rested for a while: tiles that came and went leave holes in the heap.
+void ExploreWindow::tidy_at_rest(bool busy) {
+  constexpr double kRest_s = 1;
+  if (busy) {
+    rests_since_s_ = now_s();
+    is_tidy_ = false;
+  } else if (!is_tidy_ && now_s() - rests_since_s_ > kRest_s) {
+    base::return_freed_memory();
+    is_tidy_ = true;
+  }
+}
+
 // Returns the mode in which keys act: a flight and a panorama have their own.
 explore::MotionMode ExploreWindow::key_mode() const {
   return session_.follows_flight() || guide_.inside() != nullptr ? explore::MotionMode::kOrbit
@@ -181,6 +194,7 @@ bool ExploreWindow::step(double wait_s) {
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
   keep_work(busy);
+  tidy_at_rest(busy);
   if (step_overlook(input, dt_s)) return !display_.should_close();
   explore::Controls controls = input.controls;
   controls.speed *= state_.speed;

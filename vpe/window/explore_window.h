@@ -261,6 +261,7 @@ class ExploreWindow {
   bool take_image();  // returns true if there is a new one
   double event_wait_s(bool moves, double rest_s) const;
   bool is_over_view() const;
+  void tidy_at_rest(bool busy);
   explore::MotionMode key_mode() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
@@ -314,6 +315,8 @@ class ExploreWindow {
   FilePanel files_;
   JobList jobs_;
   double jobs_asked_s_ = 0;
+  double rests_since_s_ = 0;
+  bool is_tidy_ = false;  // freed memory was returned since the last motion
   Welcome welcome_;
   DrawingPanel drawing_;
   explore::BookmarkList project_bookmarks_;
