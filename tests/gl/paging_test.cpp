@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -16,6 +17,7 @@ using test_support::FakeElevation;
 using test_support::FakeImage;
 using test_support::fine_around;
 using test_support::Random;
+namespace core = vpe::core;
 using vpe::core::DrawRequest;
 using vpe::core::DrawResult;
 using vpe::core::Renderer;
@@ -171,6 +173,31 @@ TEST_F(Paging, UpcomingViewsAreLoadedAhead) {
   const DrawResult result = draw->draw(at_once);
   EXPECT_TRUE(result.missing.empty());
   EXPECT_EQ(result.frame.colour, renderer(planet_)->draw(next).frame.colour);
+}
+
+// What is expected takes more than there is room for: what is loaded of it stays, and the rest is not loaded again and again.
+TEST_F(Paging, UpcomingViewsAreNotLoadedForEver) {
+  const auto draw = slow_renderer({}, std::size_t{128} << 20);
+  DrawRequest now = without_waiting(flight_at(0.1));
+  for (int n = 1; n <= 9; ++n) {
+    core::View& later = now.paging.upcoming.emplace_back(flight_at(0.1 * n).view);
+    later.width = 640;
+    later.height = 384;
+  }
+  DrawResult result = settle(*draw, now);
+  for (int n = 0; n < 20000 && (n < 50 || result.stats.pages_wanted + result.stats.pages_loading > 0); ++n) {
+    result = draw->draw(now);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(result.stats.pages_wanted + result.stats.pages_loading, 0);
+  std::int64_t uploaded = 0;
+  for (int n = 0; n < 100; ++n) {
+    result = draw->draw(now);
+    uploaded += result.stats.pages_uploaded;
+    EXPECT_TRUE(result.missing.empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(uploaded, 0);
 }
 
 TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndReportedOnce) {

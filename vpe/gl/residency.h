@@ -109,6 +109,12 @@ class Resident {
     }
     return sum;
   }
+  // Returns the mean size of what is held, bytes; 0 if there is nothing.
+  std::size_t mean_bytes() const {
+    std::size_t count = 0;
+    for (const auto& [tile, items] : items_) count += items.size();
+    return count == 0 ? 0 : bytes_ / count;
+  }
   // Drops values with the oldest marks until at most `limit` bytes are held. Returns how many were dropped.
   int trim(std::size_t limit, std::uint64_t current_frame) {
     if (bytes_ <= limit) return 0;

@@ -338,6 +338,7 @@ void TileStreamer::take_loaded(double limit_ms) {
 void TileStreamer::begin_requests() {
   requests_.clear();
   requested_.clear();
+  later_meshes_ = later_textures_ = {};
   any_failed_ = pager_.any_failed();
 }
 
@@ -412,13 +413,17 @@ void TileStreamer::request_later(const lod::Selection& selection, const core::Vi
   // Pages of later views count as used in the frame before, so that they leave before those of this one.
   std::vector<PageKey> pages = absent_pages(selection, view, frame_ - 1);
   if (first) pages.insert(pages.begin(), std::move(*first));
-  // More than there is room for would be dropped before it is used, and loaded again for ever.
-  const bool has_mesh_room = meshes_.bytes_since(frame_ - 1) < share(kMeshShare);
-  const bool has_texture_room = textures_.bytes_since(frame_ - 1) < share(kTextureShare);
+  // More than there is room for would be dropped before it is used, and loaded again for ever. Pages count as many bytes
+  // as those that are resident do in the mean.
+  later_meshes_.used = meshes_.bytes_since(frame_ - 1);
+  later_textures_.used = textures_.bytes_since(frame_ - 1);
+  const std::size_t mesh_bytes = meshes_.mean_bytes();
+  const std::size_t texture_bytes = textures_.mean_bytes();
   for (const PageKey& page : pages) {
-    if (page.kind == PageKind::kMesh && !has_mesh_room) continue;
-    if (page.kind == PageKind::kTexture && !has_texture_room) continue;
-    if (!is_readable(page.tile) || !requested_.insert(page).second) continue;
+    if (!is_readable(page.tile) || requested_.count(page) > 0) continue;
+    if (page.kind == PageKind::kMesh && !later_meshes_.take(mesh_bytes, share(kMeshShare))) continue;
+    if (page.kind == PageKind::kTexture && !later_textures_.take(texture_bytes, share(kTextureShare))) continue;
+    requested_.insert(page);
     requests_.push_back({page, -kLater - static_cast<double>(requests_.size())});
   }
 }

@@ -160,6 +160,19 @@ class TileStreamer {
   Resident<TextureDetail, GpuTexture> textures_;
   std::vector<std::pair<lod::TileKey, std::shared_ptr<const paging::TileHeights>>> ground_;  // latest last
 
+  // Room for pages of later views.
+  struct LaterRoom {
+    std::size_t used = 0;       // by this frame and what later views have
+    std::size_t requested = 0;  // for later views, since the requests began
+    // Takes room for a page, if there is as much within `limit`.
+    bool take(std::size_t bytes, std::size_t limit) {
+      if (used + requested + bytes > limit) return false;
+      requested += bytes;
+      return true;
+    }
+  };
+  LaterRoom later_meshes_;
+  LaterRoom later_textures_;
   std::vector<Pager::Want> requests_;
   std::unordered_set<PageKey, PageKeyHash> requested_;
   bool any_failed_ = false;  // when the requests began

@@ -69,14 +69,15 @@ void ExploreWindow::request_image() {
   request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry && !chosen.stereo;
   const double soon_s = std::clamp(2 * (drawn_ ? drawn_->seconds : 0), kSoonest_s, kLatest_s);
   const std::vector<core::View> soon = foreseen_views(next->view, soon_s, request.draw.paging.upcoming);
-  if (request.draw.want_rough_range && !chosen.stereo && !recorder_.is_recording() &&
-      !has_fixed_overlay(request.draw.settings))
-    request.margin_px = core::margin_for(next->view, soon, std::max(session_.height_m(), 1.0),
-                                         glm::ivec2(next->view.width, next->view.height) / kMostMargin);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
       core::backend_for(chosen.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
                                           session_.pose().alt_m / session_.ground().radius_m, state_.backend});
+  // Triangles draw coarser ones in place of tiles that are not loaded, for which a margin would ask.
+  if (request.backend == core::Backend::kRay && request.draw.want_rough_range && !chosen.stereo &&
+      !recorder_.is_recording() && !has_fixed_overlay(request.draw.settings))
+    request.margin_px = core::margin_for(next->view, soon, std::max(session_.height_m(), 1.0),
+                                         glm::ivec2(next->view.width, next->view.height) / kMostMargin);
   // Beside the finest tiles everywhere, any tolerance would be a leap.
   const bool is_exact = request.backend == core::Backend::kRay && !request.is_auto &&
                         request.draw.settings.ray_mode != core::RayMode::kMultires;
