@@ -91,6 +91,7 @@ TEST_F(Examples, TheProgramAcceptsEachOfThem) {
   const Words reading{"info", "verify", "query", "profile"};
   write_text(dir_ / "names.csv", "name,lon,lat\nA,10,20\n");
   write_text(dir_ / "scaling", "in the way of a folder");
+  write_text(dir_ / "papers", "in the way of a folder");
   write_text(dir_ / "mars-data", "in the way of a folder");  // else 'vpe get' would fetch
   for (const Words& words : commands()) {
     const bool reads = std::find(reading.begin(), reading.end(), words[0]) != reading.end();

@@ -150,6 +150,37 @@ TEST(Carry, NothingHiddenIsShown) {
   }
 }
 
+// A frame that is carried must not be blurred beside its key frame.
+TEST(Carry, ContrastBetweenPixelsIsKept) {
+  base::ThreadPool pool(2);
+  Scene plane;
+  plane.floors.push_back({{0, 0, 1}, 0});
+  const core::View from = view_at({0, 0, 50}, 15, -60);
+  core::Frame frame = image_of(plane, from);
+  std::mt19937 random(kSeed);
+  // Grey noise with a grain of two pixels, as ground has it.
+  std::vector<double> noise(frame.colour.size());
+  for (double& value : noise) value = random_in(random, 40, 215);
+  for (std::size_t n = 161; n < noise.size(); ++n) {
+    const double grey = (noise[n] + noise[n - 1] + noise[n - 160] + noise[n - 161]) / 4;
+    const auto tone = static_cast<std::uint8_t>(grey);
+    frame.colour[n] = {tone, tone, tone};
+  }
+  const auto contrast = [](const std::vector<base::Rgb>& colour) {
+    double sum = 0;
+    for (std::size_t y = 30; y < 90; ++y)
+      for (std::size_t x = 40; x < 120; ++x) sum += std::abs(colour[160 * y + x].r - colour[160 * y + x - 1].r);
+    return sum;
+  };
+  for (const double turn_deg : {0.1, 0.35, 0.8}) {
+    const CarriedImage image =
+        by_cells(from, frame, view_at({0, 0, 50}, 15 + turn_deg, -60 + turn_deg), {}, pool);
+    const double kept = contrast(image.colour) / contrast(frame.colour);
+    EXPECT_GT(kept, 0.83) << turn_deg;
+    EXPECT_LT(kept, 1.05) << turn_deg;
+  }
+}
+
 TEST(Carry, RowsAndCellsShowTheSame) {
   base::ThreadPool pool(2);
   const core::View left = view_at({3, 0, 22}, 4, -6);

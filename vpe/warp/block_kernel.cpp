@@ -1,9 +1,11 @@
 #include "vpe/warp/block_kernel.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "vpe/core/frame.h"
+#include "vpe/warp/cubic_taps.h"
 
 // Highway compiles this file once for each instruction set and selects the best one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -134,30 +136,86 @@ void widen_kernel(std::span<const base::Rgb> colour, std::uint32_t* words) {
                static_cast<std::uint32_t>(colour[n].b) << 16U;
 }
 
-// Returns the colours at places of an image: linear between four pixels.
-HWY_INLINE WordVec colours_at(const MixedImage& image, FloatVec u, FloatVec v) {
+// Splits places along a side into the first of the two pixels that they lie between, and 64ths of the way to the other.
+HWY_INLINE void split(FloatVec place, int size, bool filters, std::int32_t* first, std::int32_t* share_64) {
   const Floats d;
   const Ints di;
+  const FloatVec last = hn::Set(d, static_cast<float>(size - 1));
+  const FloatVec clamped = hn::Min(hn::Max(place, hn::Zero(d)), last);
+  const IntVec pixel = hn::Min(hn::ConvertTo(di, hn::Floor(clamped)), hn::Set(di, size - 2));
+  const FloatVec share = hn::Sub(clamped, hn::ConvertTo(d, pixel));
+  const FloatVec in_64 = filters ? hn::Floor(hn::Add(hn::Mul(share, hn::Set(d, 64.0F)), hn::Set(d, 0.5F)))
+                                 : hn::IfThenElseZero(hn::Ge(share, hn::Set(d, 0.5F)), hn::Set(d, 64.0F));
+  hn::StoreU(pixel, di, first);
+  hn::StoreU(hn::ConvertTo(di, in_64), di, share_64);
+}
+
+// Returns the colour of four by four pixels from `word` on, by weights in 64ths: within a step of 8 bits. `across` holds
+// each of the four weights four times, once for each byte of a word.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE std::uint32_t mixed_pixels(const std::uint32_t* word, std::size_t stride, const std::int16_t* across,
+                                      const std::int16_t* down) {
+  std::uint32_t colour = 0;
+  for (unsigned byte = 0; byte < 32; byte += 8) {
+    int sum = 32;
+    for (std::size_t column = 0; column < 4; ++column) {
+      int of_column = 32;
+      for (std::size_t row = 0; row < 4; ++row)
+        of_column += static_cast<int>(word[row * stride + column] >> byte & 0xFFU) * down[row];
+      sum += (of_column >> 6) * across[4 * column];
+    }
+    colour |= static_cast<std::uint32_t>(std::clamp(sum >> 6, 0, 255)) << byte;
+  }
+  return colour;
+}
+#else
+HWY_INLINE std::uint32_t mixed_pixels(const std::uint32_t* word, std::size_t stride, const std::int16_t* across,
+                                      const std::int16_t* down) {
+  const hn::FixedTag<std::uint8_t, 16> d8;
+  const hn::FixedTag<std::int16_t, 8> d16;
+  const hn::FixedTag<std::uint8_t, 8> half8;
+  auto left = hn::Set(d16, 32);
+  auto right = left;
+  for (std::size_t row = 0; row < 4; ++row) {
+    const auto four = hn::LoadU(d8, reinterpret_cast<const std::uint8_t*>(word + row * stride));
+    const auto weight = hn::Set(d16, down[row]);
+    left = hn::Add(left, hn::Mul(hn::PromoteTo(d16, hn::LowerHalf(half8, four)), weight));
+    right = hn::Add(right, hn::Mul(hn::PromoteTo(d16, hn::UpperHalf(half8, four)), weight));
+  }
+  left = hn::Mul(hn::ShiftRight<6>(left), hn::LoadU(d16, across));
+  right = hn::Mul(hn::ShiftRight<6>(right), hn::LoadU(d16, across + 8));
+  const auto pairs = hn::Add(left, right);
+  const auto sum = hn::Add(hn::Add(pairs, hn::ShiftRightBytes<8>(d16, pairs)), hn::Set(d16, 32));
+  const auto bytes = hn::DemoteTo(half8, hn::ShiftRight<6>(sum));
+  std::uint8_t out[8];
+  hn::StoreU(bytes, half8, out);
+  std::uint32_t colour = 0;
+  std::memcpy(&colour, out, sizeof colour);
+  return colour;
+}
+#endif
+
+// Returns the colours at places of an image, for the lanes that are wanted.
+HWY_INLINE WordVec colours_at(const MixedImage& image, FloatVec u, FloatVec v, std::uint32_t wanted) {
+  static const TapTable taps;
   const Words dw;
-  const auto split = [&](FloatVec place, int size, IntVec& first) HWY_ATTR {
-    const FloatVec last = hn::Set(d, static_cast<float>(size - 1));
-    const FloatVec clamped = hn::Min(hn::Max(place, hn::Zero(d)), last);
-    first = hn::Min(hn::ConvertTo(di, hn::Floor(clamped)), hn::Set(di, size - 2));
-    const FloatVec share = hn::Sub(clamped, hn::ConvertTo(d, first));
-    const FloatVec in_256 = image.filters
-                                ? hn::Floor(hn::Add(hn::Mul(share, hn::Set(d, 256.0F)), hn::Set(d, 0.5F)))
-                                : hn::IfThenElseZero(hn::Ge(share, hn::Set(d, 0.5F)), hn::Set(d, 256.0F));
-    return hn::BitCast(dw, hn::ConvertTo(di, in_256));
-  };
-  IntVec column;
-  IntVec row;
-  const WordVec across = split(u, image.width, column);
-  const WordVec down = split(v, image.height, row);
-  const IntVec at = hn::Add(hn::Mul(row, hn::Set(di, image.width)), column);
-  const auto pixel = [&](int offset) HWY_ATTR { return hn::GatherIndex(dw, image.words + offset, at); };
-  const WordVec upper = mix(dw, pixel(0), pixel(1), across);
-  const WordVec lower = mix(dw, pixel(image.width), pixel(image.width + 1), across);
-  return mix(dw, upper, lower, down);
+  HWY_ALIGN std::int32_t column[kVectorPad];
+  HWY_ALIGN std::int32_t across[kVectorPad];
+  HWY_ALIGN std::int32_t row[kVectorPad];
+  HWY_ALIGN std::int32_t down[kVectorPad];
+  HWY_ALIGN std::uint32_t colour[kVectorPad] = {};
+  split(u, image.width, image.filters, column, across);
+  split(v, image.height, image.filters, row, down);
+  const auto stride = static_cast<std::size_t>(image.width);
+  for (std::size_t n = 0; n < hn::Lanes(dw); ++n) {
+    if ((wanted >> n & 1U) == 0) continue;
+    const auto x = static_cast<std::size_t>(TapTable::first(column[n], image.width));
+    const auto y = static_cast<std::size_t>(TapTable::first(row[n], image.height));
+    colour[n] = mixed_pixels(image.words + y * stride + x, stride,
+                             taps.at(column[n], image.width, across[n]).by_byte.data(),
+                             taps.at(row[n], image.height, down[n]).weight.data());
+  }
+  return hn::Load(dw, colour);
 }
 
 bool show_flat_kernel(const Hits& hits, std::size_t first, int count, const MixedImage& image,
@@ -194,7 +252,10 @@ bool show_flat_kernel(const Hits& hits, std::size_t first, int count, const Mixe
     }
     const FloatVec u = hn::IfThenElseZero(flat, hn::LoadU(d, &hits.u[first + at]));
     const FloatVec v = hn::IfThenElseZero(flat, hn::LoadU(d, &hits.v[first + at]));
-    store_words(dw, hn::IfThenElseZero(hn::RebindMask(dw, flat), colours_at(image, u, v)), row.colour + x);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, flat, bits);
+    const auto wanted = static_cast<std::uint32_t>(bits[0] | bits[1] << 8);
+    store_words(dw, colours_at(image, u, v, wanted), row.colour + x);
   }
   return has_cells;
 }

@@ -34,7 +34,7 @@ DepthRest rest_of(const float* depth, std::size_t stride, int columns, int rows,
 // Draws a block into a band of rows; the nearest surface stays.
 void draw_block(const FlatBlock& block, Hits& hits);
 
-// A finished image whose pixels are mixed: colours as words with red in the lowest byte.
+// A finished image whose pixels are mixed, four by four: colours as words with red in the lowest byte. 4 x 4 or more.
 struct MixedImage {
   const std::uint32_t* words = nullptr;  // null: no colours
   int width = 0;

@@ -205,6 +205,7 @@ BlockPlan::BlockPlan(const Motion& motion, const MovedPixels& pixels, glm::ivec2
                      const CarryOptions& options, base::ThreadPool& pool) {
   const glm::ivec2 cells(pixels.width - 1, pixels.height - 1);
   if (cells.x < 1 || cells.y < 1) return;
+  const bool has_taps = std::min(pixels.width, pixels.height) >= 4;  // which colours are mixed of
   const BlockFitter fitter(motion, pixels, new_size, options);
   rows_.resize(static_cast<std::size_t>((cells.y + kLarge - 1) / kLarge));
   std::vector<double> added_px(rows_.size());
@@ -223,10 +224,10 @@ BlockPlan::BlockPlan(const Motion& motion, const MovedPixels& pixels, glm::ivec2
     };
     const int top = static_cast<int>(task) * kLarge;
     for (int left = 0; left < cells.x; left += kLarge) {
-      if (take({left, top}, kLarge)) continue;
+      if (has_taps && take({left, top}, kLarge)) continue;
       for (int y = top; y < std::min(top + kLarge, cells.y); y += kSmall)
         for (int x = left; x < std::min(left + kLarge, cells.x); x += kSmall)
-          if (!take({x, y}, kSmall)) row.rough.emplace_back(x, y);
+          if (!has_taps || !take({x, y}, kSmall)) row.rough.emplace_back(x, y);
     }
   });
   added_px_ = *std::ranges::max_element(added_px);
