@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "vpe/warp/carry_cells.h"
+#include "vpe/warp/carry_checks.h"
 #include "vpe/warp/carry_rows.h"
 #include "vpe/warp/moved_pixels.h"
 
@@ -15,11 +16,7 @@ namespace {
 void check(const core::View& from, const core::Frame& frame, const core::View& to,
            const CarryOptions& options) {
   if (const std::string problem = check_carry(from, to); !problem.empty()) throw std::invalid_argument(problem);
-  if (!(options.gap_px >= 0 && options.gap_px <= CarryLimits::kMaxGap_px))
-    throw std::invalid_argument("the widest gap must be 0 to 16 pixels");
-  if (!(options.most_added_px >= 0))
-    throw std::invalid_argument("the largest added error must be 0 or more pixels");
-  if (!(options.nearest_m >= 0)) throw std::invalid_argument("the nearest distance must be 0 or more metres");
+  check_options(options);
   const glm::ivec2 drawn = core::drawn_size(from);
   const std::size_t count = static_cast<std::size_t>(drawn.x) * static_cast<std::size_t>(drawn.y);
   if (frame.range_m.size() != count) throw std::invalid_argument("the image to carry has no ranges");
@@ -61,6 +58,30 @@ void keep_clear_of_silhouettes(base::ThreadPool& pool, CarriedImage& image) {
 
 }  // namespace
 
+void check_options(const CarryOptions& options) {
+  if (!(options.gap_px >= 0 && options.gap_px <= CarryLimits::kMaxGap_px))
+    throw std::invalid_argument("the widest gap must be 0 to 16 pixels");
+  if (!(options.most_added_px >= 0))
+    throw std::invalid_argument("the largest added error must be 0 or more pixels");
+  if (!(options.nearest_m >= 0)) throw std::invalid_argument("the nearest distance must be 0 or more metres");
+}
+
+void prepare(int width, int height, bool has_colour, CarriedImage& image) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  image.width = width;
+  image.height = height;
+  image.colour.assign(has_colour ? pixels : 0, base::Rgb{});
+  image.range_m.assign(pixels, 0.0F);
+  image.origin.assign(pixels, Origin::kOpen);
+  image.added_px = 0;
+}
+
+void finish(base::ThreadPool& pool, CarriedImage& image) {
+  keep_clear_of_silhouettes(pool, image);
+  for (const Origin origin : {Origin::kOpen, Origin::kSky, Origin::kCarried, Origin::kBetween})
+    image.pixels[static_cast<std::size_t>(origin)] = std::ranges::count(image.origin, origin);
+}
+
 std::string check_carry(const core::View& from, const core::View& to) {
   for (const core::View* view : {&from, &to}) {
     if (std::string problem = core::check(*view); !problem.empty()) return problem;
@@ -87,18 +108,14 @@ void Carrier::carry(const core::View& from, const core::Frame& frame, const core
   into.origin.resize(pixels);
   into.added_px = 0;
   if (options.gap_px == 0) {
-    std::ranges::fill(into.colour, base::Rgb{});
-    std::ranges::fill(into.range_m, 0.0F);
-    std::ranges::fill(into.origin, Origin::kOpen);
+    prepare(size.x, size.y, !frame.colour.empty(), into);
   } else if (rows_correspond(from, to)) {
     carry_rows(from, frame, to, options, pool, into);
   } else {
     if (!pixels_) pixels_ = std::make_unique<MovedPixels>();
     carry_cells(from, frame, to, options, pool, *pixels_, into);
   }
-  keep_clear_of_silhouettes(pool, into);
-  for (const Origin origin : {Origin::kOpen, Origin::kSky, Origin::kCarried, Origin::kBetween})
-    into.pixels[static_cast<std::size_t>(origin)] = std::ranges::count(into.origin, origin);
+  finish(pool, into);
 }
 
 CarriedImage carry(const core::View& from, const core::Frame& frame, const core::View& to,

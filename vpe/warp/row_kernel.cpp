@@ -33,6 +33,24 @@ using WordVec = hn::Vec<Words>;
 // long as they are hardly farther apart than in the first image.
 constexpr float kMostPartedSkyline_px = 0.125F;
 
+// Returns z times a polynomial in the square of radius z.
+HWY_INLINE FloatVec times_even(const Scan& scan, FloatVec z, float second, float fourth, float sixth) {
+  const Floats d;
+  const FloatVec y = hn::Mul(hn::Set(d, scan.radius_m), z);
+  const FloatVec square = hn::Mul(y, y);
+  FloatVec sum = hn::Add(hn::Set(d, fourth), hn::Mul(square, hn::Set(d, sixth)));
+  sum = hn::Add(hn::Set(d, second), hn::Mul(square, sum));
+  return hn::Mul(z, hn::Add(hn::Set(d, 1.0F), hn::Mul(square, sum)));
+}
+
+// Return atan(radius z) / radius, and tan(radius z) / radius; within 1e-7 for radius z up to 0.14.
+HWY_INLINE FloatVec round_of(const Scan& scan, FloatVec z) {
+  return times_even(scan, z, -1.0F / 3, 1.0F / 5, -1.0F / 7);
+}
+HWY_INLINE FloatVec straight_of(const Scan& scan, FloatVec z) {
+  return times_even(scan, z, 1.0F / 3, 2.0F / 15, 17.0F / 315);
+}
+
 // Finds the places of the first image's pixels.
 HWY_INLINE void move_pixels(const Scan& scan, RowBuffers& row) {
   const Floats d;
@@ -47,7 +65,8 @@ HWY_INLINE void move_pixels(const Scan& scan, RowBuffers& row) {
     // No number where the range is none: neither that pixel nor what lies beside it is carried.
     const auto has_range = hn::Gt(range, zero);
     const FloatVec divisor = hn::IfThenElse(has_range, range, hn::Set(d, 1.0F));
-    const FloatVec inverse = hn::IfThenElse(has_range, hn::Div(hn::LoadU(d, &row.length[at]), divisor), none);
+    FloatVec inverse = hn::IfThenElse(has_range, hn::Div(hn::LoadU(d, &row.length[at]), divisor), none);
+    if (scan.radius_m > 0) inverse = round_of(scan, inverse);
     const FloatVec still = hn::Add(hn::Iota(d, static_cast<float>(i) + 0.5F), hn::Set(d, scan.shift_px));
     const FloatVec place = hn::Sub(still, hn::Mul(base, inverse));
     // A pixel without a number comes after the end: the first comparison is false for it.
@@ -126,7 +145,8 @@ HWY_INLINE float fill(const Scan& scan, RowBuffers& row, bool has_colour) {
     // sample. Numbers that are none are smaller than all others.
     const FloatVec mixed = hn::Add(near, hn::Mul(share, hn::Sub(next, near)));
     const FloatVec nearest = hn::IfThenElse(hn::Gt(next, near), next, near);
-    const FloatVec inverse = hn::IfThenElse(is_carried, mixed, hn::IfThenElse(is_known, nearest, zero));
+    FloatVec inverse = hn::IfThenElse(is_carried, mixed, hn::IfThenElse(is_known, nearest, zero));
+    if (scan.radius_m > 0) inverse = straight_of(scan, inverse);
     const auto has_depth = hn::Gt(inverse, zero);
     const FloatVec divisor = hn::IfThenElse(has_depth, inverse, one);
     const FloatVec range = hn::Div(hn::LoadU(d, &row.new_length[at]), divisor);

@@ -16,6 +16,9 @@ struct Scan {
   int count = 0;
   float shift_px = 0;   // of points at infinity
   float base_px_m = 0;  // shift of a point at depth 1 m, >= 0
+  // Radius of the circle of the eyes of a round panorama (carry_round.h), where inverse depths are atan(radius / depth) /
+  // radius; 0: of perspective images.
+  float radius_m = 0;
   float open_from = 0;  // positions from here on are open
   float most_parted_px = 0;
   bool filters = true;
