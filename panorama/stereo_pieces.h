@@ -53,6 +53,8 @@ struct EyePair {
   // Distance between the eyes: > 0, at most kMostBase nearest_m. Larger: more depth, smaller pieces, slower.
   double base_m = 0;
   std::optional<double> nearest_m;  // range of the nearest ground in the image; absent: sky alone
+  // Widest gap, pixels, between pixels of the right eye's image that are carried from the left one. Absent: drawn in full.
+  std::optional<double> carried_gap_px = std::nullopt;
 };
 
 // Returns an empty text when the pair can be drawn, else what is wrong with it and what is allowed.

@@ -101,6 +101,65 @@ TEST_F(StereoPanorama, EveryLayoutHasTheSameEyes) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
+// Returns the mean difference of two images of equal size, steps of colour.
+double difference(const RgbImage& a, const RgbImage& b) {
+  double sum = 0;
+  for (std::size_t n = 0; n < a.pixels.size(); ++n)
+    sum += std::abs(a.pixels[n].r - b.pixels[n].r) + std::abs(a.pixels[n].g - b.pixels[n].g) +
+           std::abs(a.pixels[n].b - b.pixels[n].b);
+  return sum / (3.0 * static_cast<double>(a.pixels.size()));
+}
+
+TEST_F(StereoPanorama, TheRightEyeMayBeCarried) {
+  // Wide enough for several strips.
+  for (const Words& shape : {Words{"--width", "9000", "--elevation=-3.2,-0.8", "--eye-base", "300"},
+                             Words{"--width", "700", "--projection", "equirectangular", "--elevation=-90,90"},
+                             Words{"--width", "600", "--from", "40", "--to", "130"}}) {
+    const auto with = [&](Words more) {
+      more.insert(more.end(), shape.begin(), shape.end());
+      more.insert(more.end(), {"--set", "samples=1", "--set", "gamma=1.4", "--json"});
+      return more;
+    };
+    const auto full = parse_json(make("full.png", with({"--stereo", "ou"})).out);
+    const auto carried =
+        parse_json(make("carried.png", with({"--stereo", "ou", "--stereo-method", "reproject"})).out);
+    const RgbImage a = vpe::core::read_image(dir_ / "full.png");
+    const RgbImage b = vpe::core::read_image(dir_ / "carried.png");
+    ASSERT_EQ(a.height, b.height);
+    const int height = a.height / 2;
+    EXPECT_TRUE(part_of(a, 0, 0, a.width, height).pixels == part_of(b, 0, 0, a.width, height).pixels);
+    const RgbImage right = part_of(a, 0, height, a.width, height);
+    const RgbImage carried_right = part_of(b, 0, height, a.width, height);
+    const double off = difference(carried_right, right);
+    EXPECT_GT(off, 0);
+    EXPECT_LT(off, 0.3);
+    // Smooth ground far away is nearly the same for both eyes.
+    EXPECT_LT(off, std::max(0.2 * difference(part_of(a, 0, 0, a.width, height), right), 0.001));
+    EXPECT_GE(carried["shift_bound_px"], full["shift_bound_px"]);
+    EXPECT_LE(carried["shift_bound_px"], full["shift_bound_px"].get<double>() + 1.1);
+
+    make("mixed.png", with({"--stereo", "anaglyph", "--stereo-method", "reproject"}));
+    const RgbImage mixed = vpe::core::combine_stereo(part_of(b, 0, 0, a.width, height), carried_right,
+                                                     vpe::core::StereoLayout::kAnaglyph);
+    EXPECT_LT(difference(vpe::core::read_image(dir_ / "mixed.png"), mixed), 0.02);
+
+    const Result again =
+        vpe({"panorama", "--from-sidecar", "carried.json", "-o", "again.png", "-q", "--threads", "3"});
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(read_text(dir_ / "again.png") == read_text(dir_ / "carried.png"));
+    make("none.png", with({"--stereo", "ou", "--stereo-method", "reproject", "--stereo-gap", "0"}));
+    EXPECT_TRUE(vpe::core::read_image(dir_ / "none.png").pixels == a.pixels);
+  }
+  const auto fails = [&](const Words& more, const Words& reasons) {
+    const Result result = vpe(words("x.png", more));
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(says(result.err, reasons)) << result.err;
+  };
+  fails({"--stereo", "sbs", "--stereo-method", "reproject", "--set", "samples=1"}, {"side by side", "ou"});
+  fails({"--stereo", "ou", "--stereo-method", "reproject", "--set", "samples=4"}, {"samples", "full"});
+  fails({"--stereo-method", "reproject"}, {"--stereo-method", "--stereo"});
+}
+
 TEST_F(StereoPanorama, TheBaseIsAThirtiethOfTheNearestAndKept) {
   const auto report = parse_json(make("s.png", {"--stereo", "sbs", "--json"}).out);
   const auto sidecar = parse_json(read_text(dir_ / "s.json"));

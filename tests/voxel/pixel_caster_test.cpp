@@ -176,9 +176,41 @@ TEST_F(DrawnPixels, BadRequestsAreRefused) {
   core::DrawRequest several = request;
   several.settings.samples = 4;
   EXPECT_THROW(renderer->draw_pixels(several, mask.pixels(), frame), std::invalid_argument);
-  core::DrawRequest round = request;
-  round.view.projection = core::Projection::kCylinder;
-  EXPECT_THROW(renderer->draw_pixels(round, mask.pixels(), frame), std::invalid_argument);
+}
+
+// Round images: few pixels ray by ray, many by casting all of them.
+TEST_F(DrawnPixels, OfRoundImagesAreThoseOfTheWholeImage) {
+  const auto planet = bumpy();
+  const auto renderer = vpe::voxel::make_ray_renderer(planet, {std::size_t{256} << 20, 2});
+  Random random(20261126);
+  for (const core::Projection projection : {core::Projection::kCylinder, core::Projection::kEquirectangular}) {
+    core::DrawRequest request = request_for({10, 20, 15'000, 40, 0, 0}, planet->radius_m(), 360, 100);
+    request.view.projection = projection;
+    request.view.fov_deg = 80;
+    request.settings.smooth_edges = false;
+    request.want_range = true;
+    const core::Frame whole = renderer->draw(request).frame;
+    for (const double share : {0.02, 0.6}) {
+      Mask mask(whole.range_m.size());
+      core::Frame frame = whole;
+      for (std::size_t n = 0; n < whole.range_m.size(); ++n) {
+        if (random.uniform(0, 1) >= share) continue;
+        mask.is_wanted[n] = 1;
+        mask.clear_m[n] = std::isinf(whole.range_m[n]) ? 0 : 0.9F * whole.range_m[n];
+        frame.range_m[n] = -7;
+        frame.colour[n] = {1, 2, 3};
+      }
+      renderer->draw_pixels(request, mask.pixels(), frame);
+      int differ = 0;
+      for (std::size_t n = 0; n < whole.range_m.size(); ++n) {
+        const bool agrees = std::isinf(whole.range_m[n])
+                                ? std::isinf(frame.range_m[n])
+                                : std::abs(frame.range_m[n] / whole.range_m[n] - 1) < 1e-4;
+        if (!agrees || std::abs(frame.colour[n].r - whole.colour[n].r) > 3) ++differ;
+      }
+      EXPECT_LE(differ, 36) << share;
+    }
+  }
 }
 
 }  // namespace

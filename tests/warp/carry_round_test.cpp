@@ -86,7 +86,7 @@ TEST(CarryRound, CarriedPixelsAreWithinTheirBoundsAndNothingHiddenIsShown) {
   plain.floors.push_back({{0, 0, 1}, 0});
   for (const Scene& scene : {plain, hills()}) {
     for (const double radius_m : {0.1, 0.5, 1.5}) {
-      const int beside = columns_beside(kTurn_px, radius_m, 15);
+      const int beside = columns_beside(kTurn_px, rows_of(radius_m), 15);
       const core::Frame left = panorama_of(scene, -radius_m, 0, kTurn_px + beside);
       const core::Frame truth = panorama_of(scene, radius_m, 0, kTurn_px);
       CarriedImage right;
@@ -122,7 +122,7 @@ TEST(CarryRound, CarriedPixelsAreWithinTheirBoundsAndNothingHiddenIsShown) {
 
 TEST(CarryRound, TheFullCircleHasNoSeam) {
   base::ThreadPool pool(2);
-  const int beside = columns_beside(kTurn_px, 0.5, 15);
+  const int beside = columns_beside(kTurn_px, rows_of(0.5), 15);
   const auto carried = [&](int first) {
     CarriedImage right;
     carry_round(panorama_of(hills(), -0.5, first, kTurn_px + beside), {kTurn_px, kTurn_px}, rows_of(0.5),

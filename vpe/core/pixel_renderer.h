@@ -27,8 +27,7 @@ class PixelRenderer : public Renderer {
   // the others alone. The pixels are those of draw(), but for rays that meet something nearer than clear_m. The result has
   // no frame; its certificate is that of the wanted pixels.
   //
-  // Throws std::invalid_argument if sizes do not fit, for views that are not perspective and for several samples a pixel;
-  // else what draw() throws.
+  // Throws std::invalid_argument if sizes do not fit and for several samples a pixel; else what draw() throws.
   virtual DrawResult draw_pixels(const DrawRequest& request, const WantedPixels& wanted, Frame& frame) = 0;
 };
 

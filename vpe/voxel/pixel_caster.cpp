@@ -56,8 +56,9 @@ bool is_cast(const core::WantedPixels& wanted, std::size_t n) {
 PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted) {
   const core::SubRectangle part = core::drawn_part(view);
   const glm::ivec2 size(part.width, part.height);
-  const Counts counts = count_unknown(size, wanted);
+  Counts counts = count_unknown(size, wanted);
   PixelPlan plan;
+  if (view.projection != core::Projection::kPerspective) counts = {};
   const int top = strip_width(counts.rows, 1, kLeastShare * size.x);
   const int bottom = std::min(strip_width(counts.rows, -1, kLeastShare * size.x), size.y - top);
   const int left = strip_width(counts.columns, 1, kLeastShare * size.y);

@@ -28,7 +28,8 @@ struct PixelPlan {
   std::int64_t rays = 0;
 };
 
-// Plans the casting of a view. Everything is one strip where single rays would take longer than columns. Pure.
+// Plans the casting of a view. Everything is one strip where single rays would take longer than columns; other strips are
+// for perspective views, where columns may be cast in part. Pure.
 PixelPlan plan_pixels(const core::View& view, const core::WantedPixels& wanted);
 
 // Keeps memory from one image to the next. One thread at a time may call it.
@@ -37,7 +38,7 @@ class PixelCaster {
   // `caster` must outlive this.
   explicit PixelCaster(const RangeCaster& caster) : caster_(caster) {}
 
-  // Writes the ranges of the wanted pixels of a perspective view's drawn part, and leaves the others alone. They are those
+  // Writes the ranges of the wanted pixels of a view's drawn part, and leaves the others alone. They are those
   // of RangeCaster::cast(), but for rays that meet something before they are known to be clear; with a cell_px above 0
   // rays that are cast one by one meet the reference surface itself. Returns the tiles that columns used and the steepest
   // slope. `fallbacks` as there.

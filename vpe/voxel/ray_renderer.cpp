@@ -506,8 +506,7 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
                                           core::Frame& frame) {
   require_drawable(request);
   const std::size_t pixels = pixels_of(request.view);
-  if (request.view.projection != core::Projection::kPerspective || request.settings.samples > 1)
-    throw std::invalid_argument("single pixels are drawn of perspective views with one sample a pixel");
+  if (request.settings.samples > 1) throw std::invalid_argument("single pixels are drawn with one sample each");
   if (wanted.is_wanted.size() != pixels || wanted.clear_m.size() != pixels || frame.range_m.size() != pixels ||
       (request.want_colour && frame.colour.size() != pixels))
     throw std::invalid_argument("the pixels to draw have another size than the image");

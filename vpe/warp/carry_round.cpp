@@ -25,9 +25,10 @@ Scan scan_of(const RoundRow& row, double px_per_turn, int count, const CarryOpti
   scan.count = count;
   scan.radius_m = static_cast<float>(row.radius_m);
   scan.base_px_m = static_cast<float>(px_per_turn / mars::kPi * row.radius_m);
-  scan.open_from = row.radius_m == 0
-                       ? std::numeric_limits<float>::infinity()
-                       : static_cast<float>(count - moved_px(px_per_turn, row.radius_m, options.nearest_m));
+  scan.open_from =
+      row.radius_m == 0
+          ? std::numeric_limits<float>::infinity()
+          : static_cast<float>(count - moved_px(px_per_turn, row.radius_m, options.nearest_m * row.level));
   scan.most_parted_px =
       std::min(static_cast<float>(options.gap_px - 1 + kCarriedPosition_px), options.most_added_px);
   scan.filters = options.filters;
@@ -36,8 +37,11 @@ Scan scan_of(const RoundRow& row, double px_per_turn, int count, const CarryOpti
 
 }  // namespace
 
-int columns_beside(double px_per_turn, double radius_m, double nearest_m) {
-  return static_cast<int>(std::ceil(moved_px(px_per_turn, radius_m, nearest_m))) + 1;
+int columns_beside(double px_per_turn, std::span<const RoundRow> rows, double nearest_m) {
+  double most_px = 0;
+  for (const RoundRow& row : rows)
+    most_px = std::max(most_px, moved_px(px_per_turn, row.radius_m, nearest_m * row.level));
+  return static_cast<int>(std::ceil(most_px)) + 1;
 }
 
 void carry_round(const core::Frame& left, const RoundColumns& columns, std::span<const RoundRow> rows,

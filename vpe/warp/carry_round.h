@@ -29,13 +29,13 @@ struct RoundColumns {
   int count = 0;           // of the second eye's image
 };
 
-// Returns the number of columns that an image needs on the right of another one, whose second eye is to be carried from it:
-// by how much ground at `nearest_m`, along the ground, moves. On a full circle they are its first columns again.
-int columns_beside(double px_per_turn, double radius_m, double nearest_m);
+// Returns the number of columns that a left eye's image needs on the right of those of the right eye's: by how much ground at
+// the range `nearest_m` moves in any row. On a full circle they are its first columns again.
+int columns_beside(double px_per_turn, std::span<const RoundRow> rows, double nearest_m);
 
 // Carries the left eye's image to the right eye. The image has `rows.size()` rows and at least `columns.count` columns;
-// further ones lie on its right. Pixels whose ground could be beside the image within options.nearest_m, along the ground,
-// are open. Otherwise as Carrier::carry(): the same bounds, and the same to the bit for any number of threads. Rays that
+// further ones lie on its right. Pixels are open whose rays could meet ground beside the image at the range
+// options.nearest_m or farther away. Otherwise as Carrier::carry(): the same bounds, and the same to the bit for any number of threads. Rays that
 // meet ground nearer than 5 radii are carried less exactly. Replaces `into`. Throws std::invalid_argument where sizes do not
 // fit, and as Carrier::carry() for options.
 void carry_round(const core::Frame& left, const RoundColumns& columns, std::span<const RoundRow> rows,

@@ -317,6 +317,7 @@ void add_panorama(CLI::App& program, Common& common) {
   arguments->render.backend = core::Backend::kRay;
   add_render_options(*command, arguments->render);
   add_eye_options(*command, arguments->stereo);
+  add_method_options(*command, arguments->stereo.method);
   add_examples(
       *command,
       {{"the full circle from eye height",

@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/panorama/carried_eye.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/base/file.h"
@@ -82,9 +84,11 @@ namespace {
 // Returns what is left beside the image in memory: a strip, and a piece with its samples.
 int free_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
   constexpr std::size_t kPieceBytes = 24;
+  constexpr std::size_t kCarriedBytes = 16;  // colours, ranges and origins of both eyes
   constexpr int kLeast_mb = 64;
-  const std::size_t pixel_bytes =
-      sizeof(base::Rgb) * (plan.is_red_cyan ? 2 : 1) + (request.layers.empty() ? 0 : sizeof(float));
+  const std::size_t pixel_bytes = sizeof(base::Rgb) * (plan.is_red_cyan ? 2 : 1) +
+                                  (request.layers.empty() ? 0 : sizeof(float)) +
+                                  (request.stereo && request.stereo->carried_gap_px ? kCarriedBytes : 0);
   const std::size_t held =
       static_cast<std::size_t>(plan.strips.front().width * plan.size.height_px) * pixel_bytes +
       static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
@@ -189,7 +193,9 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
     InterruptGuard::check();
     line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(plan_.strips.size()));
   };
-  if (request_.stereo) {
+  if (request_.stereo && request_.stereo->carried_gap_px) {
+    draw_carried(strip, canvas, show, times);
+  } else if (request_.stereo) {
     draw_eyes(strip, canvas, show, times);
   } else {
     canvas.pieces = panorama::pieces_of(plan_.map, viewpoint(), strip, margin_px_);
@@ -285,11 +291,67 @@ void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::fun
   }
 }
 
+// Draws the left eye with what lies on its right, and carries it.
+void PanoramaMaker::draw_carried(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
+                                 PanoramaTimes& times) {
+  constexpr double kOfDrawing = 0.6;  // the left eye takes so much of the time
+  const CarriedEye carrier(plan_.map, viewpoint(), *request_.stereo);
+  const std::vector<Strip> columns = carrier.columns_for(strip);
+  std::vector<Piece> pieces = carrier.left_pieces(columns);
+  left_.width = std::accumulate(columns.begin(), columns.end(), 0,
+                                [](int sum, const Strip& one) { return sum + one.width; });
+  left_.height = static_cast<int>(plan_.map.height_px);
+  left_.colour.resize(static_cast<std::size_t>(left_.width) * static_cast<std::size_t>(left_.height));
+  left_.range_m.resize(left_.colour.size());
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    show(kOfDrawing * static_cast<double>(k) / static_cast<double>(pieces.size()));
+    const core::DrawResult result = draw_piece(pieces[k], true, canvas, times);
+    copy_into(left_, pieces[k], result.frame);
+  }
+  show(kOfDrawing);
+  RightEye right =
+      carrier.carry(left_, strip, dynamic_cast<core::PixelRenderer&>(*renderer_), scene_.draw_request, pool_,
+                    [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); });
+  failures_.insert(failures_.end(), right.failures.begin(), right.failures.end());
+  require_complete(render_options(request_), right.drawn);
+  canvas.figures.shift_bound_px =
+      std::max(canvas.figures.shift_bound_px, right.drawn.certificate.shift_bound_px);
+  canvas.figures.shift_bound_px += right.added_px;
+  canvas.figures.add({right.drawn.certificate.geometric_error_m, 0, right.drawn.stats.tiles_substituted,
+                      static_cast<std::int64_t>(right.drawn.missing.size())});
+  const auto width = static_cast<std::size_t>(strip.width);
+  for (std::int64_t y = 0; y < plan_.map.height_px; ++y) {
+    const std::span<base::Rgb> left(
+        &left_.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(left_.width)], width);
+    const std::span<base::Rgb> of_right(&right.frame.colour[static_cast<std::size_t>(y) * width], width);
+    if (plan_.is_red_cyan) {
+      core::mix_red_cyan(left, of_right);
+    } else {
+      std::ranges::copy(of_right, &canvas.colour[canvas.index(0, y + plan_.map.height_px)]);
+    }
+    std::ranges::copy(left, &canvas.colour[canvas.index(0, y)]);
+  }
+}
+
 void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {
+  const bool want_range = !request_.layers.empty();
+  const core::DrawResult result = draw_piece(piece, want_range, canvas, times);
+  const core::Frame& frame = result.frame;
+  for (int row = 0; row < piece.height; ++row) {
+    const auto from = static_cast<std::size_t>(row + piece.margin_px) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(piece.margin_px);
+    const std::size_t to = canvas.index(piece.x - strip.x, piece.y + row);
+    std::copy_n(frame.colour.data() + from, piece.width, canvas.colour.data() + to);
+    if (want_range) std::copy_n(frame.range_m.data() + from, piece.width, canvas.range_m.data() + to);
+  }
+}
+
+core::DrawResult PanoramaMaker::draw_piece(const Piece& piece, bool want_range, Canvas& canvas,
+                                           PanoramaTimes& times) {
   core::DrawRequest draw_request = scene_.draw_request;
   draw_request.view = piece.view;
-  draw_request.want_range = !request_.layers.empty();
-  const core::DrawResult result = renderer_->draw(draw_request);
+  draw_request.want_range = want_range;
+  core::DrawResult result = renderer_->draw(draw_request);
   failures_.insert(failures_.end(), result.failures.begin(), result.failures.end());
   require_complete(render_options(request_), result);
   constexpr double kMs = 1e-3;
@@ -305,15 +367,7 @@ void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas,
   canvas.figures.add({result.certificate.geometric_error_m,
                       result.certificate.image_bound_px.value_or(result.certificate.shift_bound_px),
                       stats.tiles_substituted, static_cast<std::int64_t>(result.missing.size())});
-  const core::Frame& frame = result.frame;
-  for (int row = 0; row < piece.height; ++row) {
-    const auto from = static_cast<std::size_t>(row + piece.margin_px) * static_cast<std::size_t>(frame.width) +
-                      static_cast<std::size_t>(piece.margin_px);
-    const std::size_t to = canvas.index(piece.x - strip.x, piece.y + row);
-    std::copy_n(frame.colour.data() + from, piece.width, canvas.colour.data() + to);
-    if (draw_request.want_range)
-      std::copy_n(frame.range_m.data() + from, piece.width, canvas.range_m.data() + to);
-  }
+  return result;
 }
 
 void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,

@@ -82,7 +82,11 @@ class PanoramaMaker {
   panorama::StripFile make(std::size_t n, ProgressLine& line, PanoramaTimes& times);
   void prepare();
   panorama::StripFile write(std::size_t n, const Canvas& canvas, PanoramaTimes& times);
+  core::DrawResult draw_piece(const panorama::Piece& piece, bool want_range, Canvas& canvas,
+                              PanoramaTimes& times);
   void draw(const panorama::Piece& piece, const panorama::Strip& strip, Canvas& canvas, PanoramaTimes& times);
+  void draw_carried(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
+                    PanoramaTimes& times);
   void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                  PanoramaTimes& times);
   void lay_overlays(Canvas& canvas);
@@ -107,6 +111,7 @@ class PanoramaMaker {
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<paging::Surface> surface_;
   std::vector<base::Rgb> colour_;  // of one strip; the next one reuses it
+  core::Frame left_;               // of one strip, where the right eye is carried
   std::vector<std::string> failures_;
   PanoramaFigures figures_;
   int kept_ = 0;

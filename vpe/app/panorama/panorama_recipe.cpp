@@ -7,6 +7,7 @@
 #include "panorama/image/metadata_error.h"
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/base/json_integer.h"
+#include "vpe/warp/carry.h"
 
 namespace vpe::app {
 
@@ -93,6 +94,7 @@ nlohmann::ordered_json stereo_json(const panorama::EyePair& eyes) {
   out["layout"] = core::to_string(eyes.layout);
   out["eye_base_m"] = eyes.base_m;
   put(out, "nearest_m", eyes.nearest_m);
+  put(out, "carried_gap_px", eyes.carried_gap_px);
   return out;
 }
 
@@ -103,6 +105,10 @@ panorama::EyePair stereo_from(const json& from) {
   eyes.layout = *layout;
   eyes.base_m = needed<double>(from, "eye_base_m");
   eyes.nearest_m = find<double>(from, "nearest_m");
+  eyes.carried_gap_px = find<double>(from, "carried_gap_px");
+  if (eyes.carried_gap_px &&
+      !(*eyes.carried_gap_px > 0 && *eyes.carried_gap_px <= warp::CarryLimits::kMaxGap_px))
+    throw MetadataError("recipe: stereo: carried_gap_px is not above 0 and at most 16");
   if (const std::string trouble = panorama::check(eyes); !trouble.empty())
     throw MetadataError("recipe: stereo: " + trouble);
   return eyes;

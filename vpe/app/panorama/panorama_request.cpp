@@ -114,6 +114,7 @@ PanoramaRequest request_from_options(const PanoramaArguments& arguments, const C
     request.stereo.emplace();
     request.stereo->layout = *layout;
     request.stereo->base_m = arguments.stereo.eye_base_m;
+    if (arguments.stereo.method.carries()) request.stereo->carried_gap_px = arguments.stereo.method.gap_px;
   }
   request.planet = absolute_planet(arguments.planet);
   request.memory_mb = request.backend == core::Backend::kPolygon ? common.memory_mb : 0;
@@ -125,7 +126,7 @@ PanoramaRequest request_from_options(const PanoramaArguments& arguments, const C
 
 // Options that a sidecar's recipe sets. A configuration file may have defaults of these; naming one beside
 // --from-sidecar contradicts it.
-constexpr std::array<std::string_view, 21> kRecipeOptions{"--at",
+constexpr std::array<std::string_view, 23> kRecipeOptions{"--at",
                                                           "--height",
                                                           "--altitude",
                                                           "--projection",
@@ -141,6 +142,8 @@ constexpr std::array<std::string_view, 21> kRecipeOptions{"--at",
                                                           "--backend",
                                                           "--stereo",
                                                           "--eye-base",
+                                                          "--stereo-method",
+                                                          "--stereo-gap",
                                                           "--tolerance",
                                                           "--sun",
                                                           "--interest",

@@ -1,0 +1,138 @@
+#include "vpe/app/panorama/carried_eye.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mars/geodesy/sphere.h"
+#include "vpe/core/appearance/shading.h"
+
+namespace vpe::app {
+
+namespace {
+
+using panorama::Piece;
+using panorama::Strip;
+
+// The nearest ground was measured with few pixels.
+constexpr double kOfNearest = 0.8;
+
+// Keeps the larger bounds, and what is missing.
+void add(core::DrawResult& all, const core::DrawResult& one) {
+  core::Certificate& certificate = all.certificate;
+  certificate.geometric_error_m = std::max(certificate.geometric_error_m, one.certificate.geometric_error_m);
+  certificate.shift_bound_px = std::max(certificate.shift_bound_px, one.certificate.shift_bound_px);
+  all.stats.tiles_substituted += one.stats.tiles_substituted;
+  all.missing.insert(all.missing.end(), one.missing.begin(), one.missing.end());
+}
+
+// Draws the open pixels of a piece. `at` is the index of its first pixel in the image, `stride` the distance of rows.
+core::DrawResult draw_open(const Piece& piece, const warp::CarriedImage& carried, std::size_t at,
+                           std::size_t stride, core::PixelRenderer& renderer, core::DrawRequest request,
+                           core::Frame& image) {
+  core::Frame part{piece.width, piece.height, {}, {}};
+  std::vector<std::uint8_t> wanted;
+  std::vector<float> clear_m;
+  for (int y = 0; y < piece.height; ++y) {
+    const std::size_t row = at + static_cast<std::size_t>(y) * stride;
+    for (std::size_t n = row; n < row + static_cast<std::size_t>(piece.width); ++n) {
+      const bool is_open = carried.origin[n] == warp::Origin::kOpen;
+      wanted.push_back(is_open ? 1 : 0);
+      clear_m.push_back(is_open && std::isfinite(carried.range_m[n]) ? carried.range_m[n] : 0);
+      part.range_m.push_back(carried.range_m[n]);
+      part.colour.push_back(image.colour[n]);
+    }
+  }
+  if (std::ranges::count(wanted, 1) == 0) return {};
+  request.view = piece.view;
+  core::DrawResult result = renderer.draw_pixels(request, {wanted, clear_m}, part);
+  std::vector<base::Rgb> drawn;
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    if (wanted[n] != 0) drawn.push_back(part.colour[n]);
+  core::apply_gamma(drawn, request.settings.gamma);
+  auto next = drawn.begin();
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    if (wanted[n] == 0) continue;
+    const auto width = static_cast<std::size_t>(piece.width);
+    image.colour[at + n / width * stride + n % width] = *next++;
+  }
+  return result;
+}
+
+}  // namespace
+
+void copy_into(core::Frame& frame, const Piece& piece, const core::Frame& image) {
+  const auto width = static_cast<std::size_t>(piece.width);
+  for (int y = 0; y < piece.height; ++y) {
+    const std::size_t from = static_cast<std::size_t>(y) * width;
+    const std::size_t to = static_cast<std::size_t>(piece.y + y) * static_cast<std::size_t>(frame.width) +
+                           static_cast<std::size_t>(piece.x);
+    std::copy_n(&image.colour[from], width, &frame.colour[to]);
+    std::copy_n(&image.range_m[from], width, &frame.range_m[to]);
+  }
+}
+
+CarriedEye::CarriedEye(const panorama::PanoramaMap& map, const panorama::Viewpoint& viewpoint,
+                       const panorama::EyePair& eyes)
+    : map_(map), viewpoint_(viewpoint), eyes_(eyes), bands_(panorama::stereo_bands(map, eyes)) {
+  for (const panorama::StereoBand& band : bands_) {
+    for (std::int64_t y = band.y; y < band.y + band.height; ++y) {
+      const double elevation_deg = map.to_direction(0.5, static_cast<double>(y) + 0.5).elevation_deg;
+      rows_.push_back({0.5 * band.base_m, std::cos(elevation_deg * mars::kRadiansPerDegree)});
+    }
+  }
+  nearest_m_ = eyes.nearest_m ? kOfNearest * (*eyes.nearest_m - 0.5 * eyes.base_m)
+                              : std::numeric_limits<double>::infinity();
+}
+
+std::vector<Strip> CarriedEye::columns_for(const Strip& strip) const {
+  const std::int64_t beside = warp::columns_beside(map_.turn_px, rows_, nearest_m_);
+  const std::int64_t end = strip.x + strip.width;
+  const std::int64_t within = std::min(beside, map_.width_px - end);
+  std::vector<Strip> columns{{strip.x, static_cast<int>(strip.width + within)}};
+  if (map_.is_full_turn() && beside > within)
+    columns.push_back({0, static_cast<int>(std::min(beside - within, map_.width_px))});
+  return columns;
+}
+
+std::vector<Piece> CarriedEye::left_pieces(const std::vector<Strip>& columns) const {
+  std::vector<Piece> pieces;
+  std::int64_t before = 0;
+  for (const Strip& strip : columns) {
+    for (Piece& piece : panorama::eye_pieces_of(map_, viewpoint_, bands_, panorama::Eye::kLeft, strip)) {
+      piece.x += before - strip.x;
+      pieces.push_back(std::move(piece));
+    }
+    before += strip.width;
+  }
+  return pieces;
+}
+
+RightEye CarriedEye::carry(const core::Frame& left, const Strip& strip, core::PixelRenderer& renderer,
+                           const core::DrawRequest& request, base::ThreadPool& pool,
+                           const std::function<void(double)>& show) const {
+  warp::CarryOptions options;
+  options.gap_px = eyes_.carried_gap_px.value();
+  options.nearest_m = nearest_m_;
+  warp::CarriedImage carried;
+  warp::carry_round(left, {map_.turn_px, strip.width}, rows_, options, pool, carried);
+  RightEye out;
+  out.added_px = carried.added_px;
+  out.drawn_share =
+      static_cast<double>(carried.count(warp::Origin::kOpen)) / static_cast<double>(carried.origin.size());
+  out.frame = {carried.width, carried.height, std::move(carried.colour), {}};
+  const std::vector<Piece> pieces =
+      panorama::eye_pieces_of(map_, viewpoint_, bands_, panorama::Eye::kRight, strip);
+  const auto stride = static_cast<std::size_t>(strip.width);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    show(static_cast<double>(k) / static_cast<double>(pieces.size()));
+    const std::size_t at =
+        static_cast<std::size_t>(pieces[k].y) * stride + static_cast<std::size_t>(pieces[k].x - strip.x);
+    const core::DrawResult result = draw_open(pieces[k], carried, at, stride, renderer, request, out.frame);
+    out.failures.insert(out.failures.end(), result.failures.begin(), result.failures.end());
+    add(out.drawn, result);
+  }
+  return out;
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,62 @@
+// The right eye of a round panorama, carried from the left one strip by strip (vpe/warp/carry_round.h).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "panorama/panorama_plan.h"
+#include "panorama/stereo_pieces.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/pixel_renderer.h"
+#include "vpe/warp/carry_round.h"
+
+namespace vpe::app {
+
+// Holds the right eye's image of a strip.
+struct RightEye {
+  core::Frame frame;
+  // What the pixels that were drawn say: the largest bounds of their certificates, missing tiles, no frame.
+  core::DrawResult drawn;
+  std::vector<std::string> failures;
+  double added_px = 0;     // largest bound of what carrying adds
+  double drawn_share = 0;  // of pixels
+};
+
+// Copies the image of a piece to its place in a frame whose first column is column 0 of the piece's coordinates.
+void copy_into(core::Frame& frame, const panorama::Piece& piece, const core::Frame& image);
+
+// Carries strips of one panorama. Any thread may use it.
+//
+// Typical usage:
+//   const CarriedEye eye(map, viewpoint, eyes);
+//   for (const Piece& piece : eye.left_pieces(eye.columns_for(strip))) copy_into(left, piece, draw(piece));
+//   const RightEye right = eye.carry(left, strip, renderer, request, pool, show);
+class CarriedEye {
+ public:
+  // `eyes` has a carried_gap_px. Keeps a reference to the map.
+  CarriedEye(const panorama::PanoramaMap& map, const panorama::Viewpoint& viewpoint,
+             const panorama::EyePair& eyes);
+
+  // Returns the columns of the left eye's image that a strip of the right eye's needs: the strip, and what lies on its right;
+  // beyond the end of a full circle its beginning.
+  std::vector<panorama::Strip> columns_for(const panorama::Strip& strip) const;
+  // Returns the pieces of these columns; x is counted from the first of them.
+  std::vector<panorama::Piece> left_pieces(const std::vector<panorama::Strip>& columns) const;
+
+  // Carries the left eye's image of columns_for(strip), and draws what is left. `request` has settings, sun and interest.
+  // Reports the share that is done in `show`. Throws what the renderer throws.
+  RightEye carry(const core::Frame& left, const panorama::Strip& strip, core::PixelRenderer& renderer,
+                 const core::DrawRequest& request, base::ThreadPool& pool,
+                 const std::function<void(double)>& show) const;
+
+ private:
+  const panorama::PanoramaMap& map_;
+  panorama::Viewpoint viewpoint_;
+  panorama::EyePair eyes_;
+  std::vector<panorama::StereoBand> bands_;
+  std::vector<warp::RoundRow> rows_;
+  double nearest_m_ = 0;
+};
+
+}  // namespace vpe::app
