@@ -32,6 +32,10 @@ constexpr std::size_t kGroundTiles = 8;
 
 constexpr std::size_t kTakeAtOnce = std::size_t{1} << 20;
 
+// Pages of later views count as used so many frames ago. Frames of a motion differ in how fine they are, so what one of them
+// does not draw the next may need.
+constexpr std::uint64_t kLaterAge = 8;
+
 constexpr double kLater = 1e12;  // less urgent than anything of this view
 
 std::size_t bytes_for_tiles(std::size_t memory_bytes, std::size_t index_bytes) {
@@ -322,6 +326,8 @@ bool TileStreamer::load_now(const PageKey& page) {
   }
 }
 
+std::uint64_t TileStreamer::later_frame() const { return frame_ > kLaterAge ? frame_ - kLaterAge : 0; }
+
 void TileStreamer::take_loaded(double limit_ms) {
   const auto start = Clock::now();
   const auto elapsed_ms = [&] {
@@ -331,7 +337,7 @@ void TileStreamer::take_loaded(double limit_ms) {
     std::vector<Pager::Loaded> pages = pager_.take(kTakeAtOnce);
     if (pages.empty()) break;
     // Those of this view are marked when they are used; those of later views must not outlast them.
-    for (Pager::Loaded& page : pages) upload(std::move(page), frame_ - 1);
+    for (Pager::Loaded& page : pages) upload(std::move(page), later_frame());
   } while (elapsed_ms() < limit_ms);
 }
 
@@ -410,13 +416,13 @@ std::vector<PageKey> TileStreamer::absent_pages(const lod::Selection& selection,
 
 void TileStreamer::request_later(const lod::Selection& selection, const core::View& view,
                                  std::optional<PageKey> first) {
-  // Pages of later views count as used in the frame before, so that they leave before those of this one.
-  std::vector<PageKey> pages = absent_pages(selection, view, frame_ - 1);
+  // So that they leave before those of this view and of the last ones.
+  std::vector<PageKey> pages = absent_pages(selection, view, later_frame());
   if (first) pages.insert(pages.begin(), std::move(*first));
   // More than there is room for would be dropped before it is used, and loaded again for ever. Pages count as many bytes
   // as those that are resident do in the mean.
-  later_meshes_.used = meshes_.bytes_since(frame_ - 1);
-  later_textures_.used = textures_.bytes_since(frame_ - 1);
+  later_meshes_.used = meshes_.bytes_since(later_frame());
+  later_textures_.used = textures_.bytes_since(later_frame());
   const std::size_t mesh_bytes = meshes_.mean_bytes();
   const std::size_t texture_bytes = textures_.mean_bytes();
   for (const PageKey& page : pages) {

@@ -133,6 +133,8 @@ class TileStreamer {
  private:
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   bool has_room(std::size_t frame_bytes, double part) const;
+  // Returns the frame in which pages of later views count as used.
+  std::uint64_t later_frame() const;
   bool set_shading(const core::DrawRequest& request);
   bool is_textured(const lod::TileKey& tile) const;
   bool is_resident(const PageKey& page, std::uint64_t frame);
