@@ -228,6 +228,9 @@ int main(int argc, char** argv) {
       print(place.name, "hover", feel(window, hand, seconds), 0);
     }
   }
-  std::printf("resident: %.0f MB\n", resident_mb());
+  std::printf("resident: %.0f MB", resident_mb());
+  const double rest_s = now_s();
+  while (now_s() - rest_s < 2.5) window.step(0.1);
+  std::printf(", after a rest %.0f MB\n", resident_mb());
   return 0;
 }
