@@ -136,6 +136,31 @@ TEST(Carry, GroundThatIsFlatBetweenNeighboursIsAtItsPlace) {
   }
 }
 
+// The same for any new view, where most blocks move as facets.
+TEST(Carry, AnyNewViewShowsFlatGroundAtItsPlace) {
+  base::ThreadPool pool(2);
+  Scene plane;
+  plane.floors.push_back({glm::normalize(glm::dvec3(0.1, -0.2, 1)), 0});
+  Scene sphere;
+  sphere.spheres.push_back({{0, 3000, -2000}, 2900});
+  const core::View from = view_at({0, 0, 50}, 15, -25, 8);
+  std::mt19937 random(kSeed);
+  for (const Scene& scene : {plane, sphere}) {
+    const core::Frame frame = image_of(scene, from);
+    for (int n = 0; n < 50; ++n) {
+      core::View to = view_at(
+          {random_in(random, -4, 4), random_in(random, -4, 4), 50 + random_in(random, -4, 4)},
+          15 + random_in(random, -5, 5), -25 + random_in(random, -5, 5), 8 + random_in(random, -10, 10));
+      to.fov_deg = random_in(random, 55, 65);
+      const CarriedImage carried = carry(from, frame, to, {.nearest_m = 40}, pool);
+      const Errors errors = errors_of(carried, from, to, image_of(scene, to));
+      EXPECT_GT(errors.shown, 0.5 * 160 * 120) << n;
+      EXPECT_LE(errors.worst_px, 0.125) << n;
+      EXPECT_LE(errors.worst_px, carried.added_px + 1e-3) << n;
+    }
+  }
+}
+
 TEST(Carry, NothingHiddenIsShown) {
   base::ThreadPool pool(2);
   for (const Scene& scene : {comb(), hills()}) {

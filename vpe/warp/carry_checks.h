@@ -1,4 +1,4 @@
-// What all ways to carry an image have in common. Private to vpe/warp.
+// Checks options, and prepares and finishes images, for all ways to carry one. Private to vpe/warp.
 #pragma once
 
 #include "vpe/base/parallel.h"

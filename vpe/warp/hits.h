@@ -1,4 +1,4 @@
-// What the pixels of a band of rows show, while an image is carried cell by cell. Private to vpe/warp.
+// Holds what the pixels of a band of rows show, while an image is carried to any other view. Private to vpe/warp.
 #pragma once
 
 #include <cstddef>

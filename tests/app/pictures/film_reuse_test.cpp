@@ -128,6 +128,18 @@ TEST_F(FilmReuse, PairsAreDrawnInFull) {
   }
 }
 
+// Each frame says what it cannot read, as without key frames.
+TEST_F(FilmReuse, DamagedTilesAreReportedFrameByFrame) {
+  fs::copy_file(planet(), dir_ / "p.vpe");
+  damage_payloads(dir_ / "p.vpe", "heights");
+  for (const char* bound : {"0", "0.5"}) {
+    const Result result =
+        vpe({"fly", "f.flight", "p.vpe", "-o", "x", "--backend", "ray", "--json", "--reuse", bound});
+    EXPECT_EQ(result.exit_code, 1) << bound;
+    EXPECT_TRUE(says(result.err, {"20 of 20 frames failed", "p.vpe"})) << bound << "\n" << result.err;
+  }
+}
+
 TEST_F(FilmReuse, BadBoundsAreRefused) {
   for (const char* bound : {"-1", "17", "much"}) {
     const Result result = vpe({"fly", "f.flight", planet().string(), "-o", "x", "--reuse", bound});

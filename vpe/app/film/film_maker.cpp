@@ -189,7 +189,7 @@ core::DrawResult FilmMaker::draw_reusing(const PlannedFrame& planned, const core
                                          core::Renderer& renderer) {
   CarriedDrawer& drawer = drawer_for(planned, renderer);
   const std::int64_t key = planned.reuse->key;
-  if (key_ != key) {
+  if (key_ != key || key == planned.index) {
     key_.reset();
     core::DrawRequest first = plan_.at(key).request;
     first.paging = request.paging;

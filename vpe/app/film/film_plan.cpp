@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
@@ -147,7 +148,12 @@ glm::ivec2 FilmPlan::margin_of(std::int64_t key) const {
   for (std::int64_t n = key + 1; n < key + kKeyFrames; ++n) others.push_back(view_of(state_at(n)));
   const mars::LonLat place{first.pose.lon_deg, first.pose.lat_deg};
   const double exaggeration = path_.exaggeration(scripts::frame_time(view_.fps, key));
-  const double ground_m = views_.terrain_height_m ? views_.terrain_height_m(place, exaggeration) : 0;
+  double ground_m = 0;
+  try {
+    if (views_.terrain_height_m) ground_m = views_.terrain_height_m(place, exaggeration);
+  } catch (const paging::PlanetError&) {
+    // Frames that need the damaged tile report it themselves.
+  }
   const double height_m = first.pose.alt_m - (std::isfinite(ground_m) ? ground_m : 0);
   return core::margin_for(view_of(first), others, kNearest * std::max(height_m, 1.0),
                           {view_.width / kMostShare, view_.height / kMostShare});

@@ -118,8 +118,6 @@ RightEye CarriedEye::carry(const core::Frame& left, const Strip& strip, core::Pi
   warp::carry_round(left, {map_.turn_px, strip.width}, rows_, options, pool, carried);
   RightEye out;
   out.added_px = carried.added_px;
-  out.drawn_share =
-      static_cast<double>(carried.count(warp::Origin::kOpen)) / static_cast<double>(carried.origin.size());
   out.frame = {carried.width, carried.height, std::move(carried.colour), {}};
   const std::vector<Piece> pieces =
       panorama::eye_pieces_of(map_, viewpoint_, bands_, panorama::Eye::kRight, strip);

@@ -16,11 +16,10 @@ namespace vpe::app {
 // Holds the right eye's image of a strip.
 struct RightEye {
   core::Frame frame;
-  // What the pixels that were drawn say: the largest bounds of their certificates, missing tiles, no frame.
+  // Holds the largest bounds of the certificates of the pixels that were drawn, and missing tiles; no frame.
   core::DrawResult drawn;
   std::vector<std::string> failures;
-  double added_px = 0;     // largest bound of what carrying adds
-  double drawn_share = 0;  // of pixels
+  double added_px = 0;  // largest bound of what carrying adds
 };
 
 // Copies the image of a piece to its place in a frame whose first column is column 0 of the piece's coordinates.

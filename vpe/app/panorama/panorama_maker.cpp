@@ -309,9 +309,12 @@ void PanoramaMaker::draw_carried(const Strip& strip, Canvas& canvas, const std::
     copy_into(left_, pieces[k], result.frame);
   }
   show(kOfDrawing);
-  RightEye right =
-      carrier.carry(left_, strip, dynamic_cast<core::PixelRenderer&>(*renderer_), scene_.draw_request, pool_,
-                    [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); });
+  RightEye right;
+  {
+    const Stopwatch watch(times.casting);
+    right = carrier.carry(left_, strip, dynamic_cast<core::PixelRenderer&>(*renderer_), scene_.draw_request,
+                          pool_, [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); });
+  }
   failures_.insert(failures_.end(), right.failures.begin(), right.failures.end());
   require_complete(render_options(request_), right.drawn);
   canvas.figures.shift_bound_px =

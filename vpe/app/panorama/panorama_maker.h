@@ -21,7 +21,7 @@ namespace vpe::app {
 struct PanoramaTimes {
   double start = 0;    // until the first piece is requested: planet file, plan, OpenGL
   double paging = 0;   // polygons: waiting for tiles; rays load them while they cast and shade
-  double casting = 0;  // rays: ranges; polygons: selecting and drawing
+  double casting = 0;  // rays: ranges, and all of an eye that is carried; polygons: selecting and drawing
   double shading = 0;  // rays: colours; polygons: reading back
   double layers = 0;
   double encoding = 0;  // packing, writing, joining

@@ -64,9 +64,6 @@ class CarriedDrawer {
   // a first image.
   core::DrawResult draw_carried(const core::DrawRequest& request);
 
-  // Forgets the first image, as after a failure to draw another one.
-  void forget() { has_first_ = false; }
-
   // Returns what the drawn pixels of the last carried image took, seconds; 0 if all were drawn.
   double drawing_s() const { return drawing_s_; }
   // Returns where each pixel of the last carried image comes from, without colours; without pixels if all were drawn.
