@@ -13,7 +13,7 @@ namespace vpe::base {
 namespace {
 
 // Returns the resident memory of this process, MB; 0 where the system does not say.
-double resident_mb() {
+[[maybe_unused]] double resident_mb() {
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
   long all = 0;
