@@ -1,0 +1,28 @@
+// A texture with coarser copies of itself, each half as wide and high, so that a pixel that shows many texels shows
+// their mean (Williams 1983).
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "objects/model/mesh.h"
+
+namespace objects {
+
+class TexturePyramid {
+ public:
+  explicit TexturePyramid(Texture texture);
+
+  // Returns the colour, 0 to 255 with alpha, at texture coordinates, which repeat. footprint_uv is the side of what a
+  // pixel covers in texture coordinates; two levels are mixed by it. Bilinear in each level, pixel centres at +0.5.
+  glm::vec4 sample(const glm::vec2& uv, float footprint_uv) const;
+  // Returns the mean of all texels.
+  glm::vec4 mean() const;
+  std::size_t bytes() const;
+
+ private:
+  std::vector<Texture> levels_;
+};
+
+}  // namespace objects
