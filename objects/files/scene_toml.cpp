@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "objects/files/scene_file.h"
+#include "objects/files/scene_limits.h"
+#include "objects/files/toml_table.h"
+#include "vpe/base/quote.h"
+
+namespace objects {
+
+namespace {
+
+class SceneTomlReader {
+ public:
+  explicit SceneTomlReader(const std::filesystem::path& path) : file_(path.string()) { scene_.path = path; }
+
+  SceneFile read(const toml::table& root) {
+    const TomlTable top(root, "the file", file_);
+    top.require_known({"version", "model", "object", "scatter", "path"});
+    if (!top.has("version")) top.fail("version is missing; expected version = 1");
+    top.integer("version", 1, 1);
+    each(top, "model", "[[model]]", [this](const TomlTable& table) { read_model(table); });
+    each(top, "object", "[[object]]", [this](const TomlTable& table) { read_object(table); });
+    each(top, "scatter", "[[scatter]]", [this](const TomlTable& table) { read_scatter(table); });
+    each(top, "path", "[[path]]", [this](const TomlTable& table) { read_path(table); });
+    return std::move(scene_);
+  }
+
+ private:
+  void each(const TomlTable& top, std::string_view key, std::string_view title,
+            const std::function<void(const TomlTable&)>& read_one) const {
+    if (!top.has(key)) return;
+    const toml::node& node = top.at(key);
+    const toml::array* tables = node.as_array();
+    if (tables == nullptr) top.fail_expecting(node, key, "tables " + std::string(title));
+    for (const toml::node& table : *tables) {
+      if (!table.is_table()) top.fail_expecting(table, key, "tables " + std::string(title));
+      read_one(TomlTable(*table.as_table(), title, file_));
+    }
+  }
+
+  void read_model(const TomlTable& table) {
+    table.require_known({"name", "file", "unit_m", "up"});
+    ModelEntry model;
+    model.name = table.text("name", problem_of_name);
+    model.file = model_path(scene_.path, table.text("file", problem_of_path));
+    model.unit_m = table.number("unit_m", kUnitRange_m, 1);
+    if (table.has("up")) model.up = static_cast<UpAxis>(table.choice("up", {"auto", "y", "z"}));
+    if (!models_.try_emplace(model.name, scene_.models.size()).second)
+      table.fail(table.at("name"), "there are two models " + vpe::base::quote_text(model.name));
+    scene_.models.push_back(std::move(model));
+  }
+
+  void read_object(const TomlTable& table) {
+    table.require_known({"name", "model", "lon", "lat", "at", "height", "altitude", "heading", "pitch", "roll",
+                         "scale", "align", "interest_levels"});
+    ObjectEntry object;
+    object.name = name_of(table);
+    object.model = model_of(table, table.at("model"), "model");
+    object.interest_levels = table.number("interest_levels", kInterestRange, 0);
+    Placing placing;
+    placing.height_m = table.number("height", kHeightRange_m, 0);
+    if (table.has("altitude")) {
+      if (table.has("height")) table.fail(table.at("altitude"), "expected altitude or height, not both");
+      placing.height_m = table.number("altitude", kHeightRange_m);
+      placing.height_kind = HeightKind::kAltitude;
+    }
+    placing.heading_deg = table.number("heading", kAngleRange_deg, 0);
+    placing.pitch_deg = table.number("pitch", kAngleRange_deg, 0);
+    placing.roll_deg = table.number("roll", kAngleRange_deg, 0);
+    placing.scale = table.number("scale", kScaleRange, 1);
+    placing.follows_slope = follows_slope(table);
+    if (table.has("at")) {
+      read_replicas(table, placing, object);
+    } else {
+      placing.place = {mars::normalize_lon_deg(table.number("lon", kLonRange_deg)),
+                       table.number("lat", kLatRange_deg)};
+      object.places.push_back(placing);
+    }
+    count_instances(table, object.places.size());
+    scene_.objects.push_back(std::move(object));
+  }
+
+  void read_replicas(const TomlTable& table, const Placing& like, ObjectEntry& object) {
+    if (table.has("lon") || table.has("lat"))
+      table.fail(table.at("at"), "expected at, or lon and lat, not both");
+    const toml::array& all = table.list("at", "[lon, lat] or [lon, lat, heading]");
+    if (all.size() > kMostInstances) table.fail(all, too_many_instances());
+    object.places.reserve(all.size());
+    for (const toml::node& node : all) {
+      const toml::array& parts = parts_of(table, node, "at", 2, 3, "[lon, lat] or [lon, lat, heading]");
+      Placing placing = like;
+      placing.place = place_of(table, parts, 0);
+      if (parts.size() == 3) placing.heading_deg = table.number_of(parts[2], "heading", kAngleRange_deg);
+      object.places.push_back(placing);
+    }
+  }
+
+  void read_scatter(const TomlTable& table) {
+    table.require_known({"name", "models", "polygon", "seed", "density_per_m2", "exponent", "rock_abundance",
+                         "diameter_m", "buried", "align", "tumble", "most"});
+    ScatterEntry scatter;
+    scatter.where = table.where();
+    scatter.name = name_of(table);
+    for (const toml::node& node : table.list("models", "names of models"))
+      scatter.models.push_back(model_of(table, node, "models"));
+    read_polygon(table, scatter);
+    if (table.has("seed")) {
+      scatter.seed =
+          static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+    }
+    read_distribution(table, scatter);
+    const toml::node& node = table.at("diameter_m");
+    const toml::array& diameters = parts_of(table, node, "diameter_m", 2, 2, "[least, most]");
+    scatter.least_diameter_m = table.number_of(diameters[0], "diameter_m", kDiameterRange_m);
+    scatter.most_diameter_m = table.number_of(diameters[1], "diameter_m", kDiameterRange_m);
+    if (scatter.most_diameter_m < scatter.least_diameter_m)
+      table.fail(node, "diameter_m: expected [least, most], found the larger one first");
+    if (scatter.most_diameter_m == scatter.least_diameter_m && table.has("rock_abundance"))
+      table.fail(node, "diameter_m: expected two diameters for rock_abundance, found one");
+    scatter.buried = table.number("buried", kShareRange, scatter.buried);
+    scatter.follows_slope = follows_slope(table);
+    scatter.tumbles = table.has("tumble") && table.truth("tumble");
+    if (table.has("most")) scatter.most = static_cast<std::size_t>(table.integer("most", 1, kMostInstances));
+    scene_.scatters.push_back(std::move(scatter));
+  }
+
+  static void read_polygon(const TomlTable& table, ScatterEntry& scatter) {
+    const toml::array& corners = table.list("polygon", "corners [lon, lat]");
+    if (corners.size() < 3 || corners.size() > kMostPolygonCorners) {
+      table.fail_expecting(corners, "polygon",
+                           "3 to " + std::to_string(kMostPolygonCorners) + " corners [lon, lat]");
+    }
+    for (const toml::node& corner : corners)
+      scatter.polygon.push_back(place_of(table, parts_of(table, corner, "polygon", 2, 2, "[lon, lat]"), 0));
+  }
+
+  static void read_distribution(const TomlTable& table, ScatterEntry& scatter) {
+    const bool is_power = table.has("density_per_m2") || table.has("exponent");
+    if (table.has("rock_abundance") == is_power)
+      table.fail("expected rock_abundance, or density_per_m2 and exponent, in [[scatter]]");
+    if (is_power)
+      scatter.distribution = PowerLaw{table.number("density_per_m2", kDensityRange_per_m2),
+                                      table.number("exponent", kExponentRange)};
+    else
+      scatter.distribution = RockAbundance{table.number("rock_abundance", kAbundanceRange)};
+  }
+
+  void read_path(const TomlTable& table) {
+    table.require_known({"name", "model", "points", "scale", "wheelbase_m", "track_m"});
+    PathEntry path;
+    path.name = name_of(table);
+    path.model = model_of(table, table.at("model"), "model");
+    path.scale = table.number("scale", kScaleRange, 1);
+    if (table.has("wheelbase_m") || table.has("track_m")) {
+      path.wheelbase_m = table.number("wheelbase_m", kWheelRange_m);
+      path.track_m = table.number("track_m", kWheelRange_m);
+    }
+    constexpr std::string_view kForm = "[seconds, lon, lat] or [seconds, lon, lat, heading]";
+    for (const toml::node& node : table.list("points", kForm)) {
+      const toml::array& parts = parts_of(table, node, "points", 3, 4, kForm);
+      PathPoint point{table.number_of(parts[0], "time", kTimeRange_s), place_of(table, parts, 1)};
+      if (parts.size() == 4) point.heading_deg = table.number_of(parts[3], "heading", kAngleRange_deg);
+      if (!path.points.empty() && point.time_s <= path.points.back().time_s)
+        table.fail_expecting(parts[0], "time", "a later one than that of the point before");
+      path.points.push_back(point);
+    }
+    count_instances(table, 1);
+    scene_.paths.push_back(std::move(path));
+  }
+
+  static bool follows_slope(const TomlTable& table) {
+    return table.has("align") && table.choice("align", {"vertical", "slope"}) == 1;
+  }
+
+  static std::string name_of(const TomlTable& table) {
+    return table.has("name") ? table.text("name", problem_of_name) : "";
+  }
+
+  static const toml::array& parts_of(const TomlTable& table, const toml::node& node, std::string_view what,
+                                     std::size_t least, std::size_t most, std::string_view form) {
+    const toml::array* parts = node.as_array();
+    if (parts == nullptr || parts->size() < least || parts->size() > most)
+      table.fail_expecting(node, what, std::string(form));
+    return *parts;
+  }
+
+  static mars::LonLat place_of(const TomlTable& table, const toml::array& parts, std::size_t first) {
+    return {mars::normalize_lon_deg(table.number_of(parts[first], "lon", kLonRange_deg)),
+            table.number_of(parts[first + 1], "lat", kLatRange_deg)};
+  }
+
+  std::size_t model_of(const TomlTable& table, const toml::node& node, std::string_view key) const {
+    const auto* name = node.as_string();
+    if (name == nullptr) table.fail_expecting(node, key, "the name of a model");
+    const auto found = models_.find(name->get());
+    if (found == models_.end())
+      table.fail(node, "there is no [[model]] with the name " + vpe::base::quote_text(name->get()));
+    return found->second;
+  }
+
+  void count_instances(const TomlTable& table, std::size_t more) {
+    instances_ += more;
+    if (instances_ > kMostInstances) table.fail(too_many_instances());
+  }
+
+  std::string file_;
+  SceneFile scene_;
+  std::map<std::string, std::size_t> models_;
+  std::size_t instances_ = 0;
+};
+
+}  // namespace
+
+SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path) {
+  const std::string problem = problem_of_size(text);
+  if (!problem.empty()) throw std::runtime_error(path.string() + ":1: " + problem);
+  if (const TomlFault fault = hostile_toml(text); fault.line != 0)
+    throw std::runtime_error(path.string() + ":" + std::to_string(fault.line) + ": " + std::string(fault.what));
+  toml::table root;
+  try {
+    root = toml::parse(text, path.string());
+  } catch (const toml::parse_error& e) {
+    throw std::runtime_error(path.string() + ":" + std::to_string(e.source().begin.line) +
+                             ": not TOML: " + std::string(e.description()));
+  }
+  return SceneTomlReader(path).read(root);
+}
+
+}  // namespace objects

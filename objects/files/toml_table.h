@@ -1,0 +1,77 @@
+// A table of a TOML file whose keys and values are checked as they are read.
+//
+// Typical usage:
+//   const TomlTable table(node, "[[object]]", "gale.scene.toml");
+//   table.require_known({"lon", "lat"});
+//   const double lat_deg = table.number("lat", kLatRange_deg);
+//
+// All members throw std::runtime_error "FILE:LINE: what".
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "objects/files/scene_limits.h"
+
+namespace objects {
+
+struct TomlFault {
+  std::size_t line = 0;  // 0: there is none
+  std::string_view what;
+};
+
+// Returns the first fault in a text that toml++ 3.3 does not survive: a key of many parts, for which it makes
+// tables in tables until their destructors exhaust the stack; characters beyond ASCII outside of texts, which
+// reach an unreachable point; and a table whose name begins with another character than names do, a date before
+// another value, and brackets that are no pairs, which fail assertions. Dates, times and texts of several lines
+// are faults too: no key has such a value.
+TomlFault hostile_toml(std::string_view text);
+
+class TomlTable {
+ public:
+  // All arguments must outlive it.
+  TomlTable(const toml::table& table, std::string_view title, const std::string& file)
+      : table_(table), title_(title), file_(file) {}
+
+  // Fails if there is another key.
+  void require_known(std::initializer_list<std::string_view> keys) const;
+  bool has(std::string_view key) const { return table_.contains(key); }
+  // Returns the node of a key; fails if there is none.
+  const toml::node& at(std::string_view key) const;
+
+  // Fail if the key is missing or has another value than is allowed.
+  double number(std::string_view key, const NumberRange& range) const;
+  std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most) const;
+  std::string text(std::string_view key, std::string (*problem_of)(std::string_view)) const;
+  std::size_t choice(std::string_view key, std::initializer_list<std::string_view> words) const;
+  bool truth(std::string_view key) const;
+  const toml::array& list(std::string_view key, std::string_view of) const;
+
+  // Returns `usual` if the key is missing.
+  double number(std::string_view key, const NumberRange& range, double usual) const {
+    return has(key) ? number(key, range) : usual;
+  }
+
+  // Returns an entry of a list as a number.
+  double number_of(const toml::node& node, std::string_view what, const NumberRange& range) const;
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
+  [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
+  [[noreturn]] void fail_expecting(const toml::node& node, std::string_view what,
+                                   const std::string& expected) const;
+  // Returns "FILE:LINE" of the table.
+  std::string where() const;
+
+ private:
+  const toml::table& table_;
+  std::string_view title_;
+  const std::string& file_;
+};
+
+}  // namespace objects
