@@ -1,0 +1,58 @@
+// A square of pixels of an image: the unit of work of compose().
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "objects/draw/object_rays.h"
+#include "vpe/core/frame.h"
+
+namespace objects {
+
+// Pixels of a drawn part, [x0, x1) x [y0, y1).
+struct PixelSquare {
+  int x0 = 0;
+  int y0 = 0;
+  int x1 = 0;
+  int y1 = 0;
+};
+
+// Returns a cone that holds the rays of a square's pixels and of `margin_px` around them. Pure.
+ViewCone cone_of(const vpe::core::View& view, const PixelSquare& square, double margin_px);
+
+// Returns the solid angle of a pixel in a direction (unit, body-fixed) that the view shows, steradians. Pure.
+double pixel_solid_angle(const vpe::core::View& view, const glm::dvec3& direction);
+
+// Holds the ranges of a square's ground and of one pixel around it, as they were before objects were drawn.
+class GroundRanges {
+ public:
+  GroundRanges(const vpe::core::Frame& frame, const PixelSquare& square);
+
+  // Pixels of the square or beside it; beyond the image those at its border.
+  float at(int x, int y) const {
+    return range_m_[static_cast<std::size_t>(y - square_.y0 + 1) * static_cast<std::size_t>(side_) +
+                    static_cast<std::size_t>(x - square_.x0 + 1)];
+  }
+  // Returns the range of the ground beside a pixel's centre, `offset` in pixels: on the plane through the pixel and its
+  // neighbours where they show one surface, else that of the pixel.
+  double beside(int x, int y, const glm::dvec2& offset) const;
+  // Return the least range, and the largest one with that of the sky or without.
+  double nearest_m() const { return nearest_m_; }
+  double farthest_m() const { return has_sky_ ? std::numeric_limits<double>::infinity() : farthest_ground_m_; }
+  double farthest_ground_m() const { return farthest_ground_m_; }
+  bool has_ground() const { return nearest_m_ < std::numeric_limits<double>::infinity(); }
+
+ private:
+  PixelSquare square_;
+  int side_;
+  std::vector<float> range_m_;
+  double nearest_m_ = std::numeric_limits<double>::infinity();  // of the square alone
+  double farthest_ground_m_ = 0;
+  bool has_sky_ = false;
+};
+
+}  // namespace objects

@@ -1,0 +1,315 @@
+#include "objects/draw/square_painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace objects {
+
+namespace {
+
+constexpr int kPart_px = 8;
+constexpr int kGroup_px = 32;
+// Up to this size objects are smoothed in all pixels beside them: rays of pixels' centres may miss them, or parts.
+constexpr double kMostSmall_px = 12;
+// Difference of light between pixels beside each other from which on the edge of a shadow is smoothed.
+constexpr float kShadowEdge = 0.05F;
+
+// Eight places of which no two share a row or a column of sixteenths.
+constexpr std::array<glm::dvec2, 8> kOffsets{{{0.0625, -0.1875},
+                                              {-0.0625, 0.1875},
+                                              {0.3125, 0.0625},
+                                              {-0.1875, -0.3125},
+                                              {-0.3125, 0.3125},
+                                              {-0.4375, -0.0625},
+                                              {0.1875, 0.4375},
+                                              {0.4375, -0.4375}}};
+
+vpe::base::Rgb to_rgb(const glm::dvec3& c) {
+  const auto byte = [](double x) { return static_cast<std::uint8_t>(std::lround(std::clamp(x, 0.0, 255.0))); };
+  return {byte(c.x), byte(c.y), byte(c.z)};
+}
+
+glm::dvec3 to_dvec3(const vpe::base::Rgb& c) { return {c.r, c.g, c.b}; }
+
+// Returns a ball around what rays of a cone meet between two ranges.
+SceneBall ball_between(const glm::dvec3& camera_m, const ViewCone& cone, double near_m, double far_m) {
+  SceneBall ball;
+  const double middle = 0.5 * (near_m + far_m);
+  ball.centre_m = camera_m + middle * cone.axis;
+  for (const double r : {near_m, far_m})
+    ball.radius_m = std::max(ball.radius_m,
+                             std::sqrt(std::max(0.0, r * r + middle * middle - 2 * r * middle * cone.cosine)));
+  return ball;
+}
+
+}  // namespace
+
+SquarePainter::SquarePainter(const Image& image, const vpe::core::Frame& frame, const PixelSquare& square)
+    : image_(image),
+      view_(image.light.request.view),
+      drawn_part_(vpe::core::drawn_part(view_)),
+      square_(square),
+      frame_width_(frame.width),
+      ground_(frame, square) {
+  const ViewCone cone = cone_of(view_, square, 1.5);
+  near_to_far_ = image_.rays.in_cone(cone, ground_.farthest_m());
+  if (!frame.colour.empty() && ground_.has_ground())
+    may_be_shaded_ = find_shadows(cone, ground_.nearest_m(), ground_.farthest_ground_m());
+}
+
+bool SquarePainter::find_shadows(const ViewCone& cone, double near_m, double far_m) const {
+  if (image_.before_sun.is_empty() || image_.light.ground == nullptr || !(near_m <= far_m)) return false;
+  const SceneBall ball = ball_between(view_.camera.position_m, cone, near_m, far_m);
+  // Below the horizon of all of it the sun casts no shadow.
+  constexpr double kNightSine = -0.05;
+  if (glm::dot(ball.centre_m, image_.light.request.sun) <
+      kNightSine * glm::length(ball.centre_m) - ball.radius_m)
+    return false;
+  return image_.before_sun.may_shade(ball.centre_m, ball.radius_m);
+}
+
+bool SquarePainter::is_wanted(int x, int y) const {
+  return image_.only.empty() ||
+         image_.only[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
+                     static_cast<std::size_t>(x)] != 0;
+}
+
+SquarePainter::Part SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
+  Part part{square, {}, false, {}};
+  const ViewCone cone = cone_of(view_, square, 1);
+  double near_m = std::numeric_limits<double>::infinity();
+  double far_m = 0;
+  double until_m = 0;
+  for (int y = square.y0; y < square.y1; ++y) {
+    for (int x = square.x0; x < square.x1; ++x) {
+      const auto r = static_cast<double>(ground_.at(x, y));
+      until_m = std::max(until_m, r);
+      if (std::isinf(r)) continue;
+      near_m = std::min(near_m, r);
+      far_m = std::max(far_m, r);
+    }
+  }
+  for (const std::uint32_t n : among) {
+    const PlacedObject& o = near_to_far_[n];
+    if (o.near_m > until_m) break;
+    if (!o.by_rays || !meets(cone, view_.camera.position_m, o.around.centre_m, o.around.radius_m)) continue;
+    part.near_to_far.push_back(n);
+    if (image_.samples == 1 || o.diameter_px > kMostSmall_px) continue;
+    const vpe::core::Projected at = vpe::core::project(view_, o.around.centre_m);
+    if (!at.behind) part.small.push_back({at.xy, 0.5 * o.diameter_px + 0.75});
+  }
+  part.may_be_shaded = may_be_shaded_ && find_shadows(cone, near_m, far_m);
+  return part;
+}
+
+ObjectRay SquarePainter::ray_of(int x, int y, const glm::dvec2& offset) const {
+  return {view_.camera.position_m,
+          vpe::core::pixel_ray(view_, drawn_part_.x + x + 0.5 + offset.x, drawn_part_.y + y + 0.5 + offset.y)};
+}
+
+ObjectColour SquarePainter::object_sample(const Part& part, int x, int y, const glm::dvec2& offset,
+                                          std::uint32_t* front) {
+  const ObjectRay ray = ray_of(x, y, offset);
+  const double until_m = ground_.beside(x, y, offset);
+  nearest_object(near_to_far_, part.near_to_far, ray, until_m, image_.pixel_rad, scratch_);
+  if (!scratch_.has_front && scratch_.layers.empty()) return {};
+  if (front != nullptr)
+    *front =
+        1 +
+        near_to_far_[scratch_.layers.empty() ? scratch_.front.object : scratch_.layers.front().object].instance;
+  return shader_->colour(ray, scratch_);
+}
+
+// Covers the pixel by many rays, and colours each object that they meet once: colour changes little within a pixel.
+glm::dvec4 SquarePainter::smooth_sample(const Part& part, int x, int y) {
+  struct ColouredObject {
+    std::uint32_t object;
+    glm::dvec4 over;
+  };
+  std::array<ColouredObject, kOffsets.size()> known;
+  std::size_t count = 0;
+  glm::dvec4 sum(0);
+  for (const glm::dvec2& offset : kOffsets) {
+    const ObjectRay ray = ray_of(x, y, offset);
+    nearest_object(near_to_far_, part.near_to_far, ray, ground_.beside(x, y, offset), image_.pixel_rad,
+                   scratch_);
+    if (!scratch_.has_front && scratch_.layers.empty()) continue;
+    if (!scratch_.layers.empty()) {
+      sum += shader_->colour(ray, scratch_).over;
+      continue;
+    }
+    const auto end = known.begin() + static_cast<std::ptrdiff_t>(count);
+    auto at = std::find_if(known.begin(), end,
+                           [&](const ColouredObject& s) { return s.object == scratch_.front.object; });
+    if (at == end) *at = {scratch_.front.object, shader_->colour(ray, scratch_).over}, ++count;
+    sum += at->over;
+  }
+  return sum / static_cast<double>(kOffsets.size());
+}
+
+double SquarePainter::light_sample(int x, int y, const glm::dvec2& offset) const {
+  const ObjectRay ray = ray_of(x, y, offset);
+  const double range_m = ground_.beside(x, y, offset);
+  if (std::isinf(range_m)) return 1;
+  return image_.before_sun.light_at(ray.origin_m + range_m * ray.direction);
+}
+
+void SquarePainter::see_pixel(const Part& part, int x, int y) {
+  SeenPixel& seen = seen_at(x, y);
+  if (!part.near_to_far.empty()) seen.object = object_sample(part, x, y, {0, 0}, &seen.front);
+  if (part.may_be_shaded && seen.object.over.w < 1) seen.light = static_cast<float>(light_sample(x, y, {0, 0}));
+}
+
+void SquarePainter::see() {
+  seen_.resize(static_cast<std::size_t>(square_.x1 - square_.x0) *
+               static_cast<std::size_t>(square_.y1 - square_.y0));
+  shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light);
+  const ObjectNumbers all = all_of(near_to_far_);
+  for (int y = square_.y0; y < square_.y1; y += kGroup_px) {
+    for (int x = square_.x0; x < square_.x1; x += kGroup_px) {
+      const PixelSquare group{x, y, std::min(x + kGroup_px, square_.x1), std::min(y + kGroup_px, square_.y1)};
+      const ViewCone cone = cone_of(view_, group, 1);
+      ObjectNumbers among;
+      for (const std::uint32_t n : all) {
+        const SceneBall& ball = near_to_far_[n].around;
+        if (meets(cone, view_.camera.position_m, ball.centre_m, ball.radius_m)) among.push_back(n);
+      }
+      if (!among.empty() || may_be_shaded_) see_parts(group, among);
+    }
+  }
+}
+
+void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& among) {
+  for (int y = square.y0; y < square.y1; y += kPart_px) {
+    for (int x = square.x0; x < square.x1; x += kPart_px) {
+      Part part = part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
+      if (part.near_to_far.empty() && !part.may_be_shaded) continue;
+      for (int j = part.square.y0; j < part.square.y1; ++j) {
+        for (int i = part.square.x0; i < part.square.x1; ++i) see_pixel(part, i, j);
+      }
+      parts_.push_back(std::move(part));
+    }
+  }
+}
+
+void SquarePainter::paint_pixel(const Part& part, int x, int y, const Seen& seen, vpe::core::Frame& frame) {
+  const SeenPixel& here = at(x, y);
+  bool is_edge = false;
+  bool is_shadow_edge = false;
+  if (image_.samples > 1) {
+    constexpr std::array<glm::ivec2, 4> kBeside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+    for (const glm::ivec2& d : kBeside) {
+      const SeenPixel* other = seen(x + d.x, y + d.y);
+      if (other == nullptr) continue;
+      is_edge = is_edge || other->front != here.front;
+      is_shadow_edge = is_shadow_edge || std::abs(other->light - here.light) > kShadowEdge;
+    }
+  }
+  for (const SmallObject& s : part.small)
+    is_edge = is_edge ||
+              glm::distance(s.middle_px, glm::dvec2(drawn_part_.x + x, drawn_part_.y + y) + 0.5) < s.reach_px;
+  ObjectColour object = here.object;
+  double light = static_cast<double>(here.light);
+  if (is_edge && !part.near_to_far.empty()) object.over = smooth_sample(part, x, y);
+  if (is_shadow_edge && part.may_be_shaded) {
+    light = 0;
+    for (const glm::dvec2& offset : kOffsets)
+      light += light_sample(x, y, offset) / static_cast<double>(kOffsets.size());
+  }
+  const std::size_t pixel =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) + static_cast<std::size_t>(x);
+  if (!frame.colour.empty()) {
+    glm::dvec3 colour = to_dvec3(frame.colour[pixel]);
+    if (light < 1 && object.over.w < 1) {
+      const ObjectRay ray = ray_of(x, y, {0, 0});
+      const auto range_m = static_cast<double>(ground_.at(x, y));
+      const double in_shadow = image_.light.ground->shadow_factor(ray.origin_m + range_m * ray.direction,
+                                                                  range_m * image_.pixel_rad);
+      if (in_shadow < 1) {
+        const Haze haze = haze_at(image_.light, ray.direction, range_m);
+        colour = (colour - haze.added) * (1 - (1 - light) * (1 - in_shadow)) + haze.added;
+        ++drawn_.counts.shaded;
+      }
+    }
+    frame.colour[pixel] = to_rgb(colour * (1 - object.over.w) + glm::dvec3(object.over));
+  }
+  if (object.over.w > 0) ++drawn_.counts.pixels;
+  if (here.object.range_m < static_cast<double>(frame.range_m[pixel]))
+    frame.range_m[pixel] = static_cast<float>(here.object.range_m);
+}
+
+// An object covers its share of the four pixels around its middle, which sum to its size wherever it lies.
+void SquarePainter::paint_small(const Seen& seen, vpe::core::Frame& frame) {
+  for (auto o = near_to_far_.rbegin(); o != near_to_far_.rend(); ++o) {
+    if (o->by_rays) continue;
+    const SceneBall& ball = o->around;
+    const vpe::core::Projected at = vpe::core::project(view_, ball.centre_m);
+    if (at.behind) continue;
+    const glm::dvec3 to = ball.centre_m - view_.camera.position_m;
+    const double range_m = glm::length(to);
+    const double area_m2 =
+        o->model->mean_silhouette_m2() * static_cast<double>(o->scale) * static_cast<double>(o->scale);
+    const double fade = glm::smoothstep(kLeastDiameter_px, kFullDiameter_px, o->diameter_px);
+    const double covered = fade * o->model->mean_opacity() * area_m2 / (range_m * range_m) /
+                           pixel_solid_angle(view_, to / range_m);
+    const glm::dvec2 place = at.xy - glm::dvec2(drawn_part_.x, drawn_part_.y) - 0.5;
+    const glm::dvec2 corner = glm::floor(place);
+    const glm::dvec2 beside = place - corner;
+    const glm::dvec3 colour = shader_->mean_colour(*o);
+    bool shows = false;
+    for (int j = 0; j < 2; ++j) {
+      for (int i = 0; i < 2; ++i) {
+        const int x = static_cast<int>(corner.x) + i;
+        const int y = static_cast<int>(corner.y) + j;
+        if (x < square_.x0 || x >= square_.x1 || y < square_.y0 || y >= square_.y1 || !is_wanted(x, y))
+          continue;
+        const SeenPixel* here = seen(x, y);
+        const double front_m = std::min(static_cast<double>(ground_.at(x, y)), here->object.range_m);
+        if (range_m > front_m) continue;
+        const double weight = (i == 0 ? 1 - beside.x : beside.x) * (j == 0 ? 1 - beside.y : beside.y);
+        const double share = std::min(1.0, covered * weight);
+        vpe::base::Rgb& pixel =
+            frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
+                         static_cast<std::size_t>(x)];
+        pixel = to_rgb(glm::mix(to_dvec3(pixel), colour, share));
+        shows = true;
+      }
+    }
+    if (shows) drawn_.instances.push_back(o->instance);
+  }
+}
+
+void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
+  for (const Part& part : parts_) {
+    for (int y = part.square.y0; y < part.square.y1; ++y) {
+      for (int x = part.square.x0; x < part.square.x1; ++x) {
+        if (is_wanted(x, y)) paint_pixel(part, x, y, seen, frame);
+      }
+    }
+  }
+  if (!frame.colour.empty()) paint_small(seen, frame);
+  for (const SeenPixel& pixel : seen_) {
+    if (pixel.front != 0 && (drawn_.instances.empty() || drawn_.instances.back() != pixel.front - 1))
+      drawn_.instances.push_back(pixel.front - 1);
+  }
+  std::sort(drawn_.instances.begin(), drawn_.instances.end());
+  drawn_.instances.erase(std::unique(drawn_.instances.begin(), drawn_.instances.end()), drawn_.instances.end());
+  for (const PlacedObject& o : near_to_far_) {
+    if (!std::binary_search(drawn_.instances.begin(), drawn_.instances.end(), o.instance)) continue;
+    const double geometric_error_m = o.model->level_error_m(o.level_index) * static_cast<double>(o.scale);
+    drawn_.counts.geometric_error_m = std::max(drawn_.counts.geometric_error_m, geometric_error_m);
+    if (!o.by_rays) {
+      // A disc in place of its shape.
+      drawn_.counts.screen_space_error_px =
+          std::max(drawn_.counts.screen_space_error_px, 0.5 * o.diameter_px / image_.rays.rule().stretch);
+    } else if (geometric_error_m > 0) {
+      drawn_.counts.screen_space_error_px = std::max(
+          drawn_.counts.screen_space_error_px, geometric_error_m * image_.rays.rule().focal_px / o.near_m);
+    }
+  }
+}
+
+}  // namespace objects

@@ -1,0 +1,96 @@
+// Draws the objects of one square of pixels. Internal to objects/draw.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "objects/draw/composer.h"
+#include "objects/draw/pixel_square.h"
+
+namespace objects {
+
+inline constexpr int kSquare_px = 64;
+
+// What the first step found at a pixel.
+struct SeenPixel {
+  std::uint32_t front = 0;  // 1 + instance of the first surface that is met; 0: none
+  float light = 1;          // of the sun on the ground there
+  ObjectColour object;
+};
+
+// Draws a square in two steps, so that the second one knows the pixels beside it. Different threads may draw different
+// squares; the first step of all ends before the second of any begins.
+class SquarePainter {
+ public:
+  struct Image {
+    const ObjectRays& rays;
+    const SunGrid& before_sun;
+    ImageLight light;
+    std::span<const std::uint8_t> only;
+    int samples = 1;       // at edges; 1: edges are not smoothed
+    double pixel_rad = 0;  // angle of a pixel at the image's middle
+  };
+
+  // `frame` is read only.
+  SquarePainter(const Image& image, const vpe::core::Frame& frame, const PixelSquare& square);
+
+  // Returns true if an object or a shadow of one may show in the square. Only then see() and paint() do anything.
+  bool may_show() const { return !near_to_far_.empty() || may_be_shaded_; }
+  void see();
+  const SeenPixel& at(int x, int y) const {
+    return seen_[static_cast<std::size_t>(y - square_.y0) * static_cast<std::size_t>(square_.x1 - square_.x0) +
+                 static_cast<std::size_t>(x - square_.x0)];
+  }
+
+  // Returns what was seen at a pixel of the image, or null where nothing may show.
+  using Seen = std::function<const SeenPixel*(int x, int y)>;
+  void paint(const Seen& seen, vpe::core::Frame& frame);
+
+  struct Drawn {
+    std::vector<std::uint32_t> instances;
+    ComposedObjects counts;
+  };
+  const Drawn& drawn() const { return drawn_; }
+
+ private:
+  // A smaller square and what may show in it.
+  struct SmallObject {
+    glm::dvec2 middle_px;  // of the full image
+    double reach_px;
+  };
+  struct Part {
+    PixelSquare square;
+    ObjectNumbers near_to_far;
+    bool may_be_shaded = false;
+    std::vector<SmallObject> small;
+  };
+  SeenPixel& seen_at(int x, int y) { return const_cast<SeenPixel&>(at(x, y)); }
+  bool is_wanted(int x, int y) const;
+  bool find_shadows(const ViewCone& cone, double near_m, double far_m) const;
+  Part part_of(const PixelSquare& square, const ObjectNumbers& among) const;
+  void see_parts(const PixelSquare& square, const ObjectNumbers& among);
+  ObjectRay ray_of(int x, int y, const glm::dvec2& offset) const;
+  ObjectColour object_sample(const Part& part, int x, int y, const glm::dvec2& offset, std::uint32_t* front);
+  double light_sample(int x, int y, const glm::dvec2& offset) const;
+  glm::dvec4 smooth_sample(const Part& part, int x, int y);
+  void see_pixel(const Part& part, int x, int y);
+  void paint_pixel(const Part& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
+  void paint_small(const Seen& seen, vpe::core::Frame& frame);
+
+  Image image_;
+  const vpe::core::View& view_;
+  vpe::core::SubRectangle drawn_part_;
+  PixelSquare square_;
+  int frame_width_;
+  GroundRanges ground_;
+  std::vector<PlacedObject> near_to_far_;
+  bool may_be_shaded_ = false;
+  std::optional<ObjectShader> shader_;
+  std::vector<SeenPixel> seen_;
+  std::vector<Part> parts_;
+  RayResult scratch_;
+  Drawn drawn_;
+};
+
+}  // namespace objects
