@@ -144,7 +144,8 @@ class Doctor : public AppTest {};
 
 TEST_F(Doctor, ReportsWhatWillBeUsedAndWhatIsMissing) {
   const nlohmann::json json = parse_json(vpe({"doctor", "--json", "--threads", "1"}).out);
-  for (const char* what : {"vpe", "GDAL", "display", "OpenGL", "threads", "memory", "cache", "ffmpeg"}) {
+  for (const char* what :
+       {"vpe", "GDAL", "display", "OpenGL", "threads", "memory", "cache", "ffmpeg", "models"}) {
     EXPECT_NE(json.at(what).at("state").get<std::string>(), "bad") << json.at(what);
   }
   EXPECT_EQ(json.at("threads").at("text").get<std::string>().front(), '1');

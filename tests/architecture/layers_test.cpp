@@ -28,9 +28,9 @@ struct Layer {
 };
 
 // Every module that a room of vpe/app may use.
-const std::vector<std::string> kBelowApp{"vpe/base", "mars",        "vpe/core",    "cull",       "lod",
-                                         "paging",   "scripts",     "vpe/overlay", "vpe/gl",     "vpe/voxel",
-                                         "panorama", "vpe/explore", "vpe/report",  "vpe/window", "vpe/warp"};
+const std::vector<std::string> kBelowApp{
+    "vpe/base",    "mars",   "vpe/core",  "cull",     "lod",         "objects",    "paging",     "scripts",
+    "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/warp"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
   rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
@@ -55,6 +55,17 @@ const std::vector<Layer>& layers() {
       {"lod/tree", "lod", {"vpe/base", "mars", "vpe/core", "cull"}},
       {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
+      {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
+      {"objects/files", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model"}},
+      {"objects/sticks", "objects", {"vpe/base", "mars", "vpe/core", "objects/model", "objects/files"}},
+      {"objects/scene",
+       "objects",
+       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/files", "objects/sticks"}},
+      {"objects/draw",
+       "objects",
+       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/files", "objects/sticks",
+        "objects/scene"}},
+      {"objects/reader", "objects", {"vpe/base", "mars", "vpe/core", "objects/model", "objects/files"}},
       {"paging/planet", "paging", {"vpe/base", "mars", "vpe/core", "lod"}},
       {"paging/build", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
       {"paging/surface", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
@@ -118,15 +129,16 @@ const std::vector<Layer>& layers() {
       {"vpe/app/cli", "vpe::app", kBelowApp, true},
       {"vpe/app/get", "vpe::app", below_app({"vpe/app/cli"}), false, false, false, true},
       {"vpe/app/planet", "vpe::app", below_app({"vpe/app/cli"}), true},
-      {"vpe/app/picture", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"}), true},
+      {"vpe/app/scene", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},
+      {"vpe/app/picture", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/scene"}), true},
       {"vpe/app/film", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture"}), true},
       {"vpe/app/panorama", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture"}), true},
       {"vpe/app/report", "vpe::app",
        below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture", "vpe/app/film", "vpe/app/panorama"}),
        true},
       {"vpe/app", "vpe::app",
-       below_app({"vpe/app/cli", "vpe/app/get", "vpe/app/planet", "vpe/app/picture", "vpe/app/film",
-                  "vpe/app/panorama", "vpe/app/report"}),
+       below_app({"vpe/app/cli", "vpe/app/get", "vpe/app/planet", "vpe/app/scene", "vpe/app/picture",
+                  "vpe/app/film", "vpe/app/panorama", "vpe/app/report"}),
        true},
       {"tests", "", below_app({"vpe/app"}), true, true},
   };
@@ -185,6 +197,8 @@ std::string include_problem(const Layer& layer, const std::string& name, bool qu
   if (is_raster_header(name) && !layer.may_read_rasters) return "only mars may include " + name;
   if (is_lettering_header(name) && !layer.may_letter) return "only vpe/overlay may include " + name;
   if (is_fetching_header(name) && !layer.may_fetch) return "only vpe/app/get may include " + name;
+  if (name.starts_with("assimp/") && layer.folder != "objects/reader")
+    return "only objects/reader may include " + name;
   if (!quoted) return "";
   const Layer* used = layer_of(name);
   if (used == nullptr) return "\"" + name + "\" is not given from the root of the repository";
@@ -321,6 +335,7 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_NE(verdict("vpe/app/picture/a.cpp", "#include \"vpe/app/panorama/commands.h\"\n" + app), "");
   EXPECT_NE(verdict("vpe/app/panorama/a.cpp", "#include \"vpe/app/commands.h\"\n" + app), "");
   EXPECT_NE(verdict("mars/sources/a.cpp", "  #  include \"vpe/core/view.h\"\nnamespace mars {}"), "");
+  EXPECT_NE(verdict("objects/files/a.cpp", "#include <assimp/scene.h>\nnamespace objects {}"), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include <paging/../GL/gl.h>\n#include <GL/gl.h>\n" + lod), "");

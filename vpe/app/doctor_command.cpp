@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "mars/sources/source.h"
+#include "objects/files/model_file.h"
 #include "vpe/app/cli/config_file.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
@@ -152,6 +153,15 @@ Finding find_ffmpeg() {
   }
 }
 
+Finding find_models() {
+  const std::string program = objects::model_reader_program();
+  if (program.empty())
+    return {
+        "models", State::kNote,
+        "vpe-model-reader is not there; objects of scenes need it (build it where libassimp-dev is installed)"};
+  return {"models", State::kGood, program};
+}
+
 const char* word(State state) {
   switch (state) {
     case State::kGood: return "good";
@@ -170,7 +180,8 @@ void doctor(const Common& common) {
                                       find_threads(common),
                                       find_memory(common),
                                       find_cache(),
-                                      find_ffmpeg()};
+                                      find_ffmpeg(),
+                                      find_models()};
   if (common.json) {
     nlohmann::json json = nlohmann::json::object();
     for (const Finding& f : findings) json[f.what] = {{"state", word(f.state)}, {"text", f.text}};

@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <iostream>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "objects/draw/single_ray.h"
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
@@ -17,6 +20,7 @@
 #include "vpe/app/planet/measured_part.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/scene/scene_library.h"
 #include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
 
@@ -78,11 +82,44 @@ void print_csv(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta, dou
               std::isfinite(measured_m) ? fixed(measured_m, 3).c_str() : "");
 }
 
+// The highest object at a place.
+struct ObjectAnswer {
+  std::string name;  // of the object, or of its model
+  double top_m = 0;  // above the planet's sphere
+};
+
 struct QueryArguments {
   std::vector<std::string> planet_and_places;
+  std::string scene;
   std::string latitude;
   bool fail_on_nodata = false;
 };
+
+// Returns the highest object at each place; nullopt where there is none.
+std::vector<std::optional<ObjectAnswer>> objects_at(const std::string& file,
+                                                    const std::vector<mars::LonLat>& places,
+                                                    const paging::Surface& surface, bool quiet) {
+  SceneLibrary library(surface);
+  const PlacedScene placed = library.scene(file, 1, 0);
+  if (!quiet) {
+    for (const std::string& note : library.take_notes()) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+  }
+  const objects::Scene& scene = *placed.scene;
+  std::vector<std::optional<ObjectAnswer>> out(places.size());
+  if (scene.is_empty()) return out;
+  const objects::SceneBall all = scene.ball();
+  const double from_m = glm::length(all.centre_m) + all.radius_m;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const glm::dvec3 up = mars::direction(places[n]);
+    const auto top = objects::first_object(scene, {from_m * up, -up}, from_m);
+    if (!top) continue;
+    const objects::Instance instance = scene.instance(top->instance);
+    const std::string& name = scene.names()[instance.name];
+    out[n] = ObjectAnswer{name.empty() ? scene.models()[instance.model]->name() : name,
+                          from_m - top->range_m - surface.planet_radius_m()};
+  }
+  return out;
+}
 
 constexpr const char* kColumns =
     "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum,"
@@ -97,12 +134,19 @@ std::vector<std::string> answer_names(const std::vector<std::string>& columns) {
   return names;
 }
 
+using Objects = std::optional<std::vector<std::optional<ObjectAnswer>>>;
+
 void print_json_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
-                        const paging::PlanetMeta& meta) {
+                        const paging::PlanetMeta& meta, const Objects& things) {
   const std::vector<double> measured_m = measured_parts_m(answers, meta);
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t n = 0; n < answers.size(); ++n) {
     nlohmann::json& answer = list.emplace_back(to_json(answers[n], meta, measured_m[n]));
+    if (things) {
+      const std::optional<ObjectAnswer>& object = (*things)[n];
+      answer["object"] = object ? nlohmann::json(object->name) : nlohmann::json();
+      answer["object_top_m"] = object ? nlohmann::json(object->top_m) : nlohmann::json();
+    }
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       answer["input"][table.columns[c]] = table.cells[n][c];
   }
@@ -110,13 +154,19 @@ void print_json_answers(const std::vector<paging::PlaceAnswer>& answers, const P
 }
 
 void print_csv_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
-                       const paging::PlanetMeta& meta) {
+                       const paging::PlanetMeta& meta, const Objects& things) {
   const std::vector<double> measured_m = measured_parts_m(answers, meta);
   std::fputs(kColumns, stdout);
+  if (things) std::fputs(",object,object_top_m", stdout);
   for (const std::string& name : answer_names(table.columns)) std::printf(",%s", csv_field(name).c_str());
   std::puts("");
   for (std::size_t n = 0; n < answers.size(); ++n) {
     print_csv(answers[n], meta, measured_m[n]);
+    if (things) {
+      const std::optional<ObjectAnswer>& object = (*things)[n];
+      std::printf(",%s,%s", object ? csv_field(object->name).c_str() : "",
+                  object ? fixed(object->top_m, 3).c_str() : "");
+    }
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       std::printf(",%s", csv_field(table.cells[n][c]).c_str());
     std::puts("");
@@ -154,10 +204,12 @@ void query(const QueryArguments& arguments, const Common& common) {
       answers[order[i]] = paging::query(surface, places[order[i]]);
   });
 
+  Objects things;
+  if (!arguments.scene.empty()) things = objects_at(arguments.scene, places, surface, common.quiet);
   if (common.json) {
-    print_json_answers(answers, table, meta);
+    print_json_answers(answers, table, meta, things);
   } else {
-    print_csv_answers(answers, table, meta);
+    print_csv_answers(answers, table, meta, things);
   }
   const auto without = std::count_if(answers.begin(), answers.end(), [](const auto& a) { return a.nodata; });
   if (arguments.fail_on_nodata && without > 0)
@@ -176,6 +228,9 @@ void add_query(CLI::App& program, Common& common) {
       "[PLANET] LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are read "
       "from stdin, one a line or as a table with columns lon and lat");
   add_latitude_option(*command, arguments->latitude);
+  command->add_option(
+      "--with-objects", arguments->scene,
+      "Scene file: answers name the highest object at a place, and the height of its top above the sphere");
   command->add_flag("--fail-on-nodata", arguments->fail_on_nodata,
                     "Exit with status 1 after the answers if a place has no data");
   add_examples(*command, {{"two places, longitude first", "vpe query mars.vpe -59.2,-13.7 226.875,17.375"},

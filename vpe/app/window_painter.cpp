@@ -140,6 +140,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   }
   core::DrawRequest draw_request = std::move(as_asked.draw);
   draw_request.paging.change_wait_s = kChange_s;
+  draw_request.time_s = request.flight_time_s;
   if (changes) {
     draw_request.paging.wait = true;
     draw_request.paging.timeout_s = kChange_s;

@@ -34,6 +34,10 @@ std::string meaning(const Certificate& c) {
         "adds; beside that, silhouettes are up to two pixels off. *_share: shares of pixels that were carried, that "
         "lie between carried ones, and that were drawn.";
   }
+  if (c.objects) {
+    text +=
+        " objects_error_px: the largest error of a drawn object against its model, which shift_bound_px includes.";
+  }
   if (c.is_below_ground) text += " The camera is below the ground: nothing is claimed about the picture.";
   if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped or grey.";
   if (!c.synthetic.empty()) text += " " + c.synthetic;
@@ -79,6 +83,11 @@ nlohmann::ordered_json to_json(const Certificate& c) {
     json["carried_share"] = c.carried->carried_share;
     json["between_share"] = c.carried->between_share;
     json["drawn_share"] = c.carried->drawn_share;
+  }
+  if (c.objects) {
+    json["objects_drawn"] = c.objects->drawn;
+    json["objects_error_m"] = c.objects->geometric_error_m;
+    json["objects_error_px"] = c.objects->screen_space_error_px;
   }
   json["tolerance_px"] = c.tolerance_px;
   json["tiles_drawn"] = c.tiles_drawn;

@@ -1,6 +1,7 @@
 // The certificate of a frame: its statement about its own geometric error.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -38,6 +39,13 @@ struct Certificate {
     double drawn_share = 0;
   };
   std::optional<Carried> carried;
+  // Describes the objects of an image; shift_bound_px includes them. Absent without any.
+  struct Objects {
+    std::int64_t drawn = 0;            // different ones
+    double geometric_error_m = 0;      // largest distance between a drawn level of detail and its model
+    double screen_space_error_px = 0;  // the same in the image
+  };
+  std::optional<Objects> objects;
   double tolerance_px = 0;  // of the request
   int tiles_drawn = 0;
   int tiles_missing = 0;

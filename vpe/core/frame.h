@@ -98,6 +98,7 @@ struct DrawRequest {
   // rays always; by triangles for colours with one sample a pixel that are no lines. Else it stays empty. For images that
   // are moved to another camera (vpe/warp); no certificate uses it.
   bool want_rough_range = false;
+  double time_s = 0;  // of the flight; decides where objects that move are
   // False: Frame::colour stays empty, and nothing is loaded for it; the certificate does not know the share of
   // nodata. For ranges at another accuracy than that of the image.
   bool want_colour = true;

@@ -94,6 +94,7 @@ const char* name_of(FileKind kind) {
     case FileKind::kManifest: return "a manifest of 'vpe fly'";
     case FileKind::kVideo: return "a film of 'vpe fly' with its manifest";
     case FileKind::kPlanet: return "a planet file of vpe";
+    case FileKind::kSticks: return "a model of sticks of vpe";
   }
   return "";
 }
@@ -121,6 +122,7 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kManifest: return is_json(head) && contains(head, "\"program\": \"vpe ");
     case FileKind::kVideo: return contains(std::string_view(head).substr(0, 12), "ftyp") && is_own_video(file);
     case FileKind::kPlanet: return paging::is_planet_file(file.string());
+    case FileKind::kSticks: return head.starts_with("VPESTICK");
   }
   return false;
 }

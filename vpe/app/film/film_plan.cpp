@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "objects/files/scene_file.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/carried_drawer.h"
@@ -117,6 +118,7 @@ PlannedFrame FilmPlan::alone(std::int64_t frame) const {
   request.view.height = has(core::StereoLayout::kOverUnder) ? view_.height / 2 : view_.height;
   request.view.fov_deg = view.fov_deg.value_or(view_.fov_deg);
   request.settings = out.settings.values();
+  request.time_s = out.time_s;
   request.interest = interest_;
   for (const scripts::InterestCommand& command : path_.interests(out.time_s)) {
     request.interest.push_back(command.region);
@@ -161,6 +163,9 @@ glm::ivec2 FilmPlan::margin_of(std::int64_t key) const {
 
 std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planned) const {
   const auto can_be_carried = [](const PlannedFrame& one) {
+    // What moves by itself is not where it was in the key frame.
+    const std::string& scene = one.request.settings.scene;
+    if (!scene.empty() && !objects::read_scene_file(scene).paths.empty()) return false;
     return !one.stereo && one.request.settings.haze_visibility_m == 0 && why_not_carried(one.request).empty();
   };
   if (!views_.reuse_px || !can_be_carried(planned)) return std::nullopt;

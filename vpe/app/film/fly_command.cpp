@@ -97,10 +97,11 @@ std::vector<fs::path> inputs_of(const FlyArguments& arguments, const scripts::Fl
   const auto add = [&] {
     inputs.emplace_back(settings.values().names);
     inputs.emplace_back(settings.values().palette);
+    inputs.emplace_back(settings.values().scene);
   };
   add();
   for (const scripts::SetCommand& set : flight.sets) {
-    if (set.key.find("names") == std::string::npos && set.key != "palette") continue;
+    if (set.key.find("names") == std::string::npos && set.key != "palette" && set.key != "scene") continue;
     if (settings.set(set.key, set.text).empty()) add();
   }
   return inputs;

@@ -239,7 +239,7 @@ void remove_strips(const fs::path& image) {
 
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
   const core::SettingsValues& settings = request.settings.values();
-  std::vector<fs::path> inputs{request.planet, settings.names, settings.palette};
+  std::vector<fs::path> inputs{request.planet, settings.names, settings.palette, settings.scene};
   const fs::path sidecar = sidecar_file(request.output);
   std::error_code none;
   // An image that is made again gets its own sidecar again.

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "paging/surface/distance.h"
+#include "vpe/app/scene/object_renderer.h"
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/image/edge_filter.h"
 #include "vpe/core/margin.h"
@@ -81,8 +82,9 @@ CarriedDrawer::CarriedDrawer(core::Renderer& renderer, const std::shared_ptr<con
       options_(options),
       pool_(options.threads) {
   if (rays_ != nullptr) return;
-  own_rays_ = voxel::make_ray_renderer(
-      planet, {.memory_bytes = options.memory_bytes / 4 * 3, .threads = options.threads});
+  own_rays_ = with_objects(voxel::make_ray_renderer(planet, {.memory_bytes = options.memory_bytes / 4 * 3,
+                                                             .threads = options.threads}),
+                           planet, {.threads = options.threads});
   rays_ = own_rays_.get();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "objects/files/scene_file.h"
 #include "vpe/app/cli/digest.h"
 #include "vpe/core/appearance/palette.h"
 
@@ -51,6 +52,12 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   const core::SettingsValues& values = settings.values();
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
+  if (!values.scene.empty()) {
+    const objects::SceneFile scene = objects::read_scene_file(values.scene);
+    digest.add("scene");
+    for (const std::filesystem::path& file : objects::files_of(scene)) digest.add(checksum_of(file));
+    if (!scene.paths.empty()) digest.add(request.time_s);
+  }
   if (request.keeps_levels) digest.add("keeps levels");
   if (origin.stereo) {
     digest.add("stereo").add(core::to_string(origin.stereo->layout)).add(origin.stereo->eye_base_m);

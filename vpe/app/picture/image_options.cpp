@@ -9,8 +9,10 @@
 #include "lod/options.h"
 #include "mars/geodesy/mars_time.h"
 #include "mars/geodesy/sun.h"
+#include "objects/files/scene_file.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/planet/latitude_option.h"
+#include "vpe/app/scene/object_renderer.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -52,6 +54,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
                      "Position of the sun: a date such as 2026-11-20T12:00Z; a season and hour such as "
                      "Ls90,15:00 (solar longitude, and local true solar time at the ground below the camera); "
                      "or local, for the azimuth and elevation of the settings");
+  command.add_option("--scene", options.scene,
+                     "Objects on the ground: a scene file, *.scene.toml, or GeoJSON points with models");
   command.add_option("--wait", options.wait_s, "Longest time to wait for the tiles of an image, seconds")
       ->check(number_within(0.0, 1e6))
       ->capture_default_str();
@@ -112,10 +116,16 @@ core::Settings make_settings(const RenderOptions& options) {
     const std::string error = settings.set("sun", options.sun);
     if (!error.empty()) throw UsageError("--sun: " + error);
   }
+  if (!options.scene.empty()) {
+    const std::string error = settings.set("scene", options.scene);
+    if (!error.empty()) throw UsageError("--scene: " + error);
+  }
   for (const std::string& assignment : options.set) {
     const std::string error = settings.assign(assignment);
     if (!error.empty()) throw UsageError("--set " + assignment + ": " + error);
   }
+  // What is wrong in it is told before any work.
+  if (!settings.values().scene.empty()) (void)objects::read_scene_file(settings.values().scene);
   return settings;
 }
 
@@ -126,16 +136,21 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
   if (!options.backend) throw std::logic_error("make_renderer: no backend was chosen");
+  const ObjectRendererOptions objects{.threads = common.threads,
+                                      .note = [quiet = common.quiet](const std::string& note) {
+                                        if (!quiet) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+                                      }};
   if (*options.backend == core::Backend::kRay)
-    return voxel::make_ray_renderer(std::move(planet),
-                                    {.memory_bytes = memory_bytes(common),
-                                     .threads = common.threads,
-                                     .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes),
-                                     .explained = explained});
+    return with_objects(
+        voxel::make_ray_renderer(planet, {.memory_bytes = memory_bytes(common),
+                                          .threads = common.threads,
+                                          .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes),
+                                          .explained = explained}),
+        planet, objects);
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;
-  return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
+  return with_objects(gl::make_polygon_renderer(gl::Context::create(), planet, renderer), planet, objects);
 }
 
 void require_budget(const core::SettingsValues& settings, core::Backend backend) {

@@ -20,6 +20,7 @@ struct RenderOptions {
   std::vector<std::string> set;          // KEY=VALUE
   std::string sun;                       // value of the setting; empty: the setting stays
   std::optional<core::Backend> backend;  // nullopt: auto, the choice of choose_backend()
+  std::string scene;                     // value of the setting; empty: the setting stays
   double tolerance_px = -1;              // < 0: the setting stays
   // For the tiles of an image. Smaller: a slow disk or server fails the image sooner; larger: it is waited for.
   double wait_s = 300;
@@ -27,7 +28,7 @@ struct RenderOptions {
   std::vector<std::string> interest;  // LON,LAT,RADIUS_M,LEVELS
 };
 
-// Adds --set, --backend, --tolerance, --sun, --wait, --allow-incomplete and --interest to a command. The values
+// Adds --set, --backend, --tolerance, --sun, --scene, --wait, --allow-incomplete and --interest to a command. The values
 // in `options` at this moment are the defaults.
 //
 // Typical usage:
@@ -41,8 +42,8 @@ struct RenderOptions {
 //   require_complete(arguments.image, result);
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-// Returns the default settings (sky, and image or elevation colours) changed by --tolerance, then --sun, then
-// every --set in order. Throws UsageError that names the key.
+// Returns the default settings (sky, and image or elevation colours) changed by --tolerance, --sun and --scene, then
+// every --set in order. Throws UsageError that names the key, and what read_scene_file() throws.
 core::Settings make_settings(const RenderOptions& options);
 
 // Returns the regions of every --interest, in order. Throws UsageError that says what is expected.

@@ -98,7 +98,7 @@ void check_render_outputs(const RenderArguments& arguments, const core::Settings
                  {"--overlay-layer", arguments.overlay_layer, FileKind::kImage},
                  {"--stereo-map", arguments.stereo.map, FileKind::kImage},
                  {"--stereo-differences", arguments.stereo.differences, FileKind::kImage}},
-                {arguments.planet, settings.names, settings.palette});
+                {arguments.planet, settings.names, settings.palette, settings.scene});
   check_overlay_layer(arguments.overlay_layer, settings);
   check_stereo(arguments.stereo);
   if (arguments.stereo.layout.empty()) return;

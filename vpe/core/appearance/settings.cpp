@@ -162,6 +162,8 @@ const KeyRegistry<SettingsValues>& registry() {
        Declare::number_or_word<&V::ray_fovea>(RayLimits::kLeastFovea, RayLimits::kMostFovea, "off"), "",
        "backend ray, mode multires, perspective: share of the image's sides, about its middle, that has a ray for "
        "each pixel; the rest has half as many columns and rows; off: all of the image"},
+      {"scene", Declare::text<&V::scene>("a scene file, *.scene.toml or GeoJSON points", no_problem), "",
+       "objects on the ground: models and their places"},
       {"samples", Declare::choice<&V::samples>({word("1", 1), word("2", 2), word("4", 4)}), "",
        "colour samples in each pixel (anti-aliasing), backend ray: rays in each pixel; without a GPU, more "
        "than one more than doubles the time"},

@@ -79,6 +79,7 @@ struct SettingsValues : Appearance, Overlays {
   // RayMode::kMultires, perspective: the share of each side of the image, about its middle, that has a ray for each
   // pixel; the rest has half as many columns and rows. Smaller: faster, less is sharp. nullopt: all of the image.
   std::optional<double> ray_fovea;
+  std::string scene;         // path of a scene file (objects/files/scene_file.h); "": no objects
   int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
   bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel
 

@@ -1,0 +1,158 @@
+#include "vpe/app/scene/object_renderer.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "objects/draw/composer.h"
+#include "paging/shading/ground_light.h"
+#include "vpe/app/scene/scene_library.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/appearance/shading.h"
+#include "vpe/core/appearance/sky.h"
+
+namespace vpe::app {
+
+namespace {
+
+// What draws objects; made for the first request that has any.
+class ObjectPass {
+ public:
+  ObjectPass(std::shared_ptr<const paging::PlanetFile> planet, const ObjectRendererOptions& options)
+      : planet_(std::move(planet)),
+        surface_(planet_, options.memory_bytes / 2),
+        shader_(planet_, options.memory_bytes / 2),
+        pool_(options.threads),
+        library_(surface_),
+        note_(options.note) {}
+
+  PlacedScene scene(const core::DrawRequest& request) {
+    PlacedScene placed = library_.scene(request.settings.scene, request.settings.exaggeration, request.time_s);
+    for (const std::string& text : library_.take_notes()) {
+      if (note_) note_(text);
+    }
+    return placed;
+  }
+
+  void draw(const PlacedScene& placed, const core::DrawRequest& request, bool is_exact,
+            std::span<const std::uint8_t> only, core::Frame& frame, core::Certificate& certificate) {
+    core::DrawRequest for_planet = request;
+    core::for_body(for_planet.settings, planet_->meta().body);
+    const paging::GroundLight light(shader_, surface_,
+                                    paging::shading_params(for_planet.settings, request.sun,
+                                                           planet_->meta().finest_image_level >= 0, nullptr));
+    const objects::ComposedObjects drawn =
+        objects::compose(*placed.scene, {for_planet, planet_->radius_m(), &light},
+                         objects::level_rule(for_planet, is_exact), pool_, frame, only);
+    certificate.objects = {drawn.objects, drawn.geometric_error_m, drawn.screen_space_error_px};
+    certificate.shift_bound_px = std::max(certificate.shift_bound_px, drawn.screen_space_error_px);
+    if (certificate.image_bound_px)
+      certificate.image_bound_px = std::max(*certificate.image_bound_px, drawn.screen_space_error_px);
+    if (certificate.middle_bound_px)
+      certificate.middle_bound_px = std::max(*certificate.middle_bound_px, drawn.screen_space_error_px);
+  }
+
+  std::size_t bytes() const { return surface_.bytes_resident() + shader_.bytes_resident() + library_.bytes(); }
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::Surface surface_;
+  paging::TerrainShader shader_;
+  base::ThreadPool pool_;
+  SceneLibrary library_;
+  std::function<void(const std::string&)> note_;
+};
+
+bool has_objects(const core::DrawRequest& request) { return !request.settings.scene.empty(); }
+
+// Ranges that triangles know only roughly, or only when they are asked for, decide what hides an object.
+bool needs_own_ranges(const core::SettingsValues& settings) {
+  return settings.samples > 1 || settings.mode == core::Mode::kWireframe ||
+         settings.mode == core::Mode::kMarkers;
+}
+
+// Returns the request of the ground below the objects: with ranges, without gamma.
+core::DrawRequest ground_request(const core::DrawRequest& request,
+                                 const std::vector<core::InterestRegion>& interest) {
+  core::DrawRequest ground = request;
+  ground.settings.scene.clear();
+  ground.settings.gamma = 1;
+  ground.want_rough_range = true;
+  ground.want_range = request.want_range || !request.want_colour || needs_own_ranges(request.settings);
+  ground.interest.insert(ground.interest.end(), interest.begin(), interest.end());
+  return ground;
+}
+
+template <class Base>
+class ObjectRenderer : public Base {
+ public:
+  ObjectRenderer(std::unique_ptr<Base> ground, std::shared_ptr<const paging::PlanetFile> planet,
+                 const ObjectRendererOptions& options)
+      : ground_(std::move(ground)), planet_(std::move(planet)), options_(options) {}
+
+  core::DrawResult draw(const core::DrawRequest& request) override {
+    if (!has_objects(request)) return ground_->draw(request);
+    const PlacedScene placed = pass().scene(request);
+    core::DrawRequest below = ground_request(request, placed.interest);
+    if (request.paging.next && has_objects(*request.paging.next))
+      below.paging.next =
+          std::make_shared<const core::DrawRequest>(ground_request(*request.paging.next, placed.interest));
+    core::DrawResult result = ground_->draw(below);
+    if (!result.certificate.is_below_ground && !result.frame.range_m.empty())
+      pass().draw(placed, request, is_exact(request), {}, result.frame, result.certificate);
+    core::apply_gamma(result.frame.colour, request.settings.gamma);
+    if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
+    result.stats.bytes_resident += static_cast<std::int64_t>(pass().bytes());
+    return result;
+  }
+
+ protected:
+  // Rays meet the surface itself; triangles and cells keep to a tolerance.
+  static bool is_exact(const core::DrawRequest& request) {
+    return std::is_same_v<Base, core::PixelRenderer> && request.settings.ray_mode == core::RayMode::kExact &&
+           request.coarsening <= 1;
+  }
+
+  ObjectPass& pass() {
+    if (!pass_) pass_.emplace(planet_, options_);
+    return *pass_;
+  }
+
+  std::unique_ptr<Base> ground_;
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  ObjectRendererOptions options_;
+  std::optional<ObjectPass> pass_;
+};
+
+class ObjectPixelRenderer : public ObjectRenderer<core::PixelRenderer> {
+ public:
+  using ObjectRenderer::ObjectRenderer;
+
+  core::DrawResult draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
+                               core::Frame& frame) override {
+    if (!has_objects(request)) return ground_->draw_pixels(request, wanted, frame);
+    const PlacedScene placed = pass().scene(request);
+    core::DrawResult result = ground_->draw_pixels(ground_request(request, placed.interest), wanted, frame);
+    if (!result.certificate.is_below_ground)
+      pass().draw(placed, request, is_exact(request), wanted.is_wanted, frame, result.certificate);
+    return result;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<core::Renderer> with_objects(std::unique_ptr<core::Renderer> ground,
+                                             std::shared_ptr<const paging::PlanetFile> planet,
+                                             const ObjectRendererOptions& options) {
+  return std::make_unique<ObjectRenderer<core::Renderer>>(std::move(ground), std::move(planet), options);
+}
+
+std::unique_ptr<core::PixelRenderer> with_objects(std::unique_ptr<core::PixelRenderer> ground,
+                                                  std::shared_ptr<const paging::PlanetFile> planet,
+                                                  const ObjectRendererOptions& options) {
+  return std::make_unique<ObjectPixelRenderer>(std::move(ground), std::move(planet), options);
+}
+
+}  // namespace vpe::app

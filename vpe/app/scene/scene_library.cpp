@@ -1,0 +1,147 @@
+#include "vpe/app/scene/scene_library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "objects/files/model_file.h"
+#include "objects/scene/scatter.h"
+#include "objects/sticks/stick_file.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/scene/level_cache.h"
+
+namespace vpe::app {
+
+namespace {
+
+// The region of interest reaches this many radii of an object.
+constexpr double kInterestRadii = 4;
+constexpr double kLeastInterest_m = 10;
+
+core::InterestRegion region_around(const mars::LonLat& place, double radius_m, double levels) {
+  return {place.lon_deg, place.lat_deg, std::max(kLeastInterest_m, kInterestRadii * radius_m),
+          static_cast<int>(std::lround(levels))};
+}
+
+// Returns the folder of kept levels; empty if nothing can be kept.
+std::filesystem::path models_folder() {
+  try {
+    return cache_folder() / "models";
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEntry& entry) {
+  const std::optional<base::FileStamp> stamp = base::file_stamp(entry.file);
+  KnownModel& known = known_[entry.file];
+  if (known.model && stamp && known.stamp == *stamp && known.unit_m == entry.unit_m && known.up == entry.up)
+    return known.model;
+  if (entry.file.extension() == ".sticks") {
+    known.model = std::make_shared<const objects::Model>(
+        entry.name, std::make_shared<const objects::StickModel>(objects::read_stick_file(entry.file)));
+    known.stamp = stamp.value_or(base::FileStamp());
+    return known.model;
+  }
+  objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
+  for (const std::string& note : file.notes) notes_.push_back(entry.file.string() + ": " + note);
+  known.model =
+      std::make_shared<const objects::Model>(entry.name, cached_levels(std::move(file.mesh), models_folder()));
+  known.stamp = stamp.value_or(base::FileStamp());
+  known.unit_m = entry.unit_m;
+  known.up = entry.up;
+  return known.model;
+}
+
+std::uint32_t SceneLibrary::name_index(const std::string& name) {
+  const auto at = std::find(names_.begin(), names_.end(), name);
+  if (at != names_.end()) return static_cast<std::uint32_t>(at - names_.begin());
+  names_.push_back(name);
+  return static_cast<std::uint32_t>(names_.size() - 1);
+}
+
+void SceneLibrary::read(const std::string& file) {
+  const std::optional<base::FileStamp> stamp = base::file_stamp(file);
+  const bool is_known = stamp && stamp_ == stamp && file_ == file;
+  objects::Scene::Models models;
+  if (!is_known) {
+    // What fails leaves nothing half read.
+    stamp_.reset();
+    standing_.reset();
+    entries_ = objects::read_scene_file(file);
+    names_.assign(1, "");
+  }
+  for (const objects::ModelEntry& entry : entries_.models) models.push_back(model(entry));
+  if (models != models_) standing_.reset();
+  models_ = std::move(models);
+  file_ = file;
+  stamp_ = stamp;
+}
+
+objects::GroundRadius SceneLibrary::ground(double exaggeration) const {
+  return [this, exaggeration](const glm::dvec3& direction) {
+    return surface_.at(direction, exaggeration).radius_m;
+  };
+}
+
+void SceneLibrary::place_standing(double exaggeration) {
+  Standing standing;
+  standing.exaggeration = exaggeration;
+  const objects::GroundRadius radius_m = ground(exaggeration);
+  const double planet_radius_m = surface_.planet_radius_m();
+  const auto place = [&](const objects::Placing& placing, std::size_t model, std::uint32_t name) {
+    const double size_m = static_cast<double>(models_[model]->ball().radius_m) * placing.scale;
+    objects::Instance instance = objects::place_instance(placing, size_m, planet_radius_m, radius_m);
+    instance.model = static_cast<std::uint32_t>(model);
+    instance.name = name;
+    standing.instances.push_back(instance);
+    return size_m;
+  };
+  for (const objects::ObjectEntry& entry : entries_.objects) {
+    const std::uint32_t name = name_index(entry.name);
+    for (const objects::Placing& placing : entry.places) {
+      const double size_m = place(placing, entry.model, name);
+      if (entry.interest_levels != 0)
+        standing.interest.push_back(region_around(placing.place, size_m, entry.interest_levels));
+    }
+  }
+  std::vector<objects::RockModel> rocks;
+  for (const auto& m : models_)
+    rocks.push_back({2 * static_cast<double>(m->ball().radius_m), glm::dvec3(m->ball().centre_m)});
+  for (const objects::ScatterEntry& entry : entries_.scatters) {
+    const std::uint32_t name = name_index(entry.name);
+    for (const objects::Scattered& rock : objects::scatter(entry, rocks, planet_radius_m))
+      place(rock.placing, rock.model, name);
+  }
+  if (entries_.paths.empty())
+    standing.scene = std::make_shared<const objects::Scene>(models_, standing.instances, names_);
+  standing_ = std::move(standing);
+}
+
+PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, double time_s) {
+  read(file);
+  if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
+  if (standing_->scene) return {standing_->scene, standing_->interest};
+  std::vector<objects::Instance> instances = standing_->instances;
+  for (const objects::PathEntry& path : entries_.paths) {
+    objects::Instance moving = objects::path_instance(path, time_s, ground(exaggeration));
+    moving.model = static_cast<std::uint32_t>(path.model);
+    moving.name = name_index(path.name);
+    instances.push_back(moving);
+  }
+  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), standing_->interest};
+}
+
+std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes_, {}); }
+
+std::size_t SceneLibrary::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& m : models_) sum += m->bytes();
+  if (standing_) sum += standing_->instances.capacity() * sizeof(objects::Instance);
+  if (standing_ && standing_->scene) sum += standing_->scene->bytes();
+  return sum;
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,77 @@
+// Objects of scene files as they stand on a planet: models are read once, and placed when the ground or the time changes.
+//
+// Typical usage:
+//   SceneLibrary library(planet, 64 << 20);
+//   const auto scene = library.scene("gale.scene.toml", settings.exaggeration, time_s);
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "objects/files/scene_file.h"
+#include "objects/scene/place.h"
+#include "objects/scene/scene.h"
+#include "paging/surface/surface.h"
+#include "vpe/base/file.h"
+#include "vpe/core/interest.h"
+
+namespace vpe::app {
+
+// Holds a scene at one time.
+struct PlacedScene {
+  std::shared_ptr<const objects::Scene> scene;
+  std::vector<core::InterestRegion> interest;  // around objects that ask for finer ground
+};
+
+// Belongs to one thread at a time. Does not depend on what was asked before.
+class SceneLibrary {
+ public:
+  // `surface` must outlive this.
+  explicit SceneLibrary(const paging::Surface& surface) : surface_(surface) {}
+
+  // Returns the objects of a scene file on ground with this exaggeration at a time of the flight. Reads the file, and the
+  // models that it names, when they are new or have changed. Throws what read_scene_file(), read_model_file() and
+  // scatter() throw, and paging::PlanetError.
+  PlacedScene scene(const std::string& file, double exaggeration, double time_s);
+
+  // Returns what readers of models have ignored since the last call, a line each.
+  std::vector<std::string> take_notes();
+  std::size_t bytes() const;
+
+ private:
+  struct KnownModel {
+    base::FileStamp stamp;
+    double unit_m = 1;
+    objects::UpAxis up = objects::UpAxis::kAuto;
+    std::shared_ptr<const objects::Model> model;
+  };
+  // Objects that stand still, on ground of one exaggeration.
+  struct Standing {
+    double exaggeration = 1;
+    std::vector<objects::Instance> instances;
+    std::vector<core::InterestRegion> interest;
+    std::shared_ptr<const objects::Scene> scene;  // null where others move
+  };
+
+  void read(const std::string& file);
+  std::shared_ptr<const objects::Model> model(const objects::ModelEntry& entry);
+  objects::GroundRadius ground(double exaggeration) const;
+  std::uint32_t name_index(const std::string& name);
+  void place_standing(double exaggeration);
+
+  const paging::Surface& surface_;
+  std::optional<base::FileStamp> stamp_;
+  std::string file_;
+  objects::SceneFile entries_;
+  objects::Scene::Models models_;
+  std::vector<std::string> names_{""};
+  std::map<std::filesystem::path, KnownModel> known_;
+  std::optional<Standing> standing_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace vpe::app
