@@ -54,6 +54,15 @@ extern const Target kAxes;
 // Reads PNG, JPEG and TIFF as panoramas and planes: headers, views, rows, and inserting an XMP packet.
 extern const Target kImage;
 
+// Reads scene files: the first byte selects TOML or GeoJSON. What is read is within limits, messages name the file.
+extern const Target kScene;
+
+// Reads models of sticks and casts rays at them.
+extern const Target kSticks;
+
+// Reads what vpe-model-reader sends.
+extern const Target kMesh;
+
 // Ends the process with the message when `promise` does not hold.
 void require(bool promise, const char* message);
 

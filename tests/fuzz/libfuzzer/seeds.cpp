@@ -10,7 +10,8 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   for (const fuzz::Target* target :
        {&fuzz::kFlight, &fuzz::kPayload, &fuzz::kPlanet, &fuzz::kForged, &fuzz::kLabel, &fuzz::kRover,
-        &fuzz::kGpano, &fuzz::kSidecar, &fuzz::kImage, &fuzz::kPlace, &fuzz::kTable, &fuzz::kAxes}) {
+        &fuzz::kGpano, &fuzz::kSidecar, &fuzz::kImage, &fuzz::kPlace, &fuzz::kTable, &fuzz::kAxes,
+        &fuzz::kScene, &fuzz::kSticks, &fuzz::kMesh}) {
     if (std::strcmp(target->name, argv[1]) != 0) continue;
     std::filesystem::create_directories(argv[2]);
     int number = 0;
