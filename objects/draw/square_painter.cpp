@@ -77,8 +77,8 @@ bool SquarePainter::is_wanted(int x, int y) const {
                      static_cast<std::size_t>(x)] != 0;
 }
 
-SquarePainter::Part SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
-  Part part{square, {}, false, {}};
+SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
+  SubSquare part{square, {}, false, {}};
   const ViewCone cone = cone_of(view_, square, 1);
   double near_m = std::numeric_limits<double>::infinity();
   double far_m = 0;
@@ -110,7 +110,7 @@ ObjectRay SquarePainter::ray_of(int x, int y, const glm::dvec2& offset) const {
           vpe::core::pixel_ray(view_, drawn_part_.x + x + 0.5 + offset.x, drawn_part_.y + y + 0.5 + offset.y)};
 }
 
-ObjectColour SquarePainter::object_sample(const Part& part, int x, int y, const glm::dvec2& offset,
+ObjectColour SquarePainter::object_sample(const SubSquare& part, int x, int y, const glm::dvec2& offset,
                                           std::uint32_t* front) {
   const ObjectRay ray = ray_of(x, y, offset);
   const double until_m = ground_.beside(x, y, offset);
@@ -124,7 +124,7 @@ ObjectColour SquarePainter::object_sample(const Part& part, int x, int y, const 
 }
 
 // Covers the pixel by many rays, and colours each object that they meet once: colour changes little within a pixel.
-glm::dvec4 SquarePainter::smooth_sample(const Part& part, int x, int y) {
+glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
   struct ColouredObject {
     std::uint32_t object;
     glm::dvec4 over;
@@ -157,7 +157,7 @@ double SquarePainter::light_sample(int x, int y, const glm::dvec2& offset) const
   return image_.before_sun.light_at(ray.origin_m + range_m * ray.direction);
 }
 
-void SquarePainter::see_pixel(const Part& part, int x, int y) {
+void SquarePainter::see_pixel(const SubSquare& part, int x, int y) {
   SeenPixel& seen = seen_at(x, y);
   if (!part.near_to_far.empty()) seen.object = object_sample(part, x, y, {0, 0}, &seen.front);
   if (part.may_be_shaded && seen.object.over.w < 1) seen.light = static_cast<float>(light_sample(x, y, {0, 0}));
@@ -185,7 +185,8 @@ void SquarePainter::see() {
 void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& among) {
   for (int y = square.y0; y < square.y1; y += kPart_px) {
     for (int x = square.x0; x < square.x1; x += kPart_px) {
-      Part part = part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
+      SubSquare part =
+          part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
       if (part.near_to_far.empty() && !part.may_be_shaded) continue;
       for (int j = part.square.y0; j < part.square.y1; ++j) {
         for (int i = part.square.x0; i < part.square.x1; ++i) see_pixel(part, i, j);
@@ -195,7 +196,8 @@ void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& am
   }
 }
 
-void SquarePainter::paint_pixel(const Part& part, int x, int y, const Seen& seen, vpe::core::Frame& frame) {
+void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen& seen,
+                                vpe::core::Frame& frame) {
   const SeenPixel& here = at(x, y);
   bool is_edge = false;
   bool is_shadow_edge = false;
@@ -208,9 +210,12 @@ void SquarePainter::paint_pixel(const Part& part, int x, int y, const Seen& seen
       is_shadow_edge = is_shadow_edge || std::abs(other->light - here.light) > kShadowEdge;
     }
   }
-  for (const SmallObject& s : part.small)
-    is_edge = is_edge ||
-              glm::distance(s.middle_px, glm::dvec2(drawn_part_.x + x, drawn_part_.y + y) + 0.5) < s.reach_px;
+  // Amid an object, where the pixels beside this one show it, too, rays miss nothing.
+  if (!is_edge && here.front == 0) {
+    const glm::dvec2 middle_px = glm::dvec2(drawn_part_.x + x, drawn_part_.y + y) + 0.5;
+    for (const SmallObject& s : part.small)
+      is_edge = is_edge || glm::distance(s.middle_px, middle_px) < s.reach_px;
+  }
   ObjectColour object = here.object;
   double light = static_cast<double>(here.light);
   if (is_edge && !part.near_to_far.empty()) object.over = smooth_sample(part, x, y);
@@ -283,7 +288,7 @@ void SquarePainter::paint_small(const Seen& seen, vpe::core::Frame& frame) {
 }
 
 void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
-  for (const Part& part : parts_) {
+  for (const SubSquare& part : parts_) {
     for (int y = part.square.y0; y < part.square.y1; ++y) {
       for (int x = part.square.x0; x < part.square.x1; ++x) {
         if (is_wanted(x, y)) paint_pixel(part, x, y, seen, frame);

@@ -59,7 +59,7 @@ class SquarePainter {
     glm::dvec2 middle_px;  // of the full image
     double reach_px;
   };
-  struct Part {
+  struct SubSquare {
     PixelSquare square;
     ObjectNumbers near_to_far;
     bool may_be_shaded = false;
@@ -68,14 +68,15 @@ class SquarePainter {
   SeenPixel& seen_at(int x, int y) { return const_cast<SeenPixel&>(at(x, y)); }
   bool is_wanted(int x, int y) const;
   bool find_shadows(const ViewCone& cone, double near_m, double far_m) const;
-  Part part_of(const PixelSquare& square, const ObjectNumbers& among) const;
+  SubSquare part_of(const PixelSquare& square, const ObjectNumbers& among) const;
   void see_parts(const PixelSquare& square, const ObjectNumbers& among);
   ObjectRay ray_of(int x, int y, const glm::dvec2& offset) const;
-  ObjectColour object_sample(const Part& part, int x, int y, const glm::dvec2& offset, std::uint32_t* front);
+  ObjectColour object_sample(const SubSquare& part, int x, int y, const glm::dvec2& offset,
+                             std::uint32_t* front);
   double light_sample(int x, int y, const glm::dvec2& offset) const;
-  glm::dvec4 smooth_sample(const Part& part, int x, int y);
-  void see_pixel(const Part& part, int x, int y);
-  void paint_pixel(const Part& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
+  glm::dvec4 smooth_sample(const SubSquare& part, int x, int y);
+  void see_pixel(const SubSquare& part, int x, int y);
+  void paint_pixel(const SubSquare& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
   void paint_small(const Seen& seen, vpe::core::Frame& frame);
 
   Image image_;
@@ -88,7 +89,7 @@ class SquarePainter {
   bool may_be_shaded_ = false;
   std::optional<ObjectShader> shader_;
   std::vector<SeenPixel> seen_;
-  std::vector<Part> parts_;
+  std::vector<SubSquare> parts_;
   RayResult scratch_;
   Drawn drawn_;
 };

@@ -44,9 +44,17 @@ std::size_t bin_of(float value, float low, float per_unit) {
 }  // namespace
 
 struct TriangleTree::Builder {
+  // A node of the tree of two children, from which the one of four is made. `count` 0: inner.
+  struct Pair {
+    Box box;
+    std::uint32_t first = 0;  // item, or the second child; the first one follows its parent
+    std::uint32_t count = 0;
+  };
+
   const Mesh& mesh;
   TriangleTree& tree;
   std::vector<BoxedTriangle> items;
+  std::vector<Pair> pairs;
 
   struct Split {
     int axis = -1;  // none: a leaf costs less
@@ -120,27 +128,73 @@ struct TriangleTree::Builder {
   void build(std::size_t begin, std::size_t end, int depth) {
     Box box;
     for (std::size_t n = begin; n < end; ++n) box.add(items[n].box);
-    const std::size_t at = tree.nodes_.size();
-    tree.nodes_.push_back({box.low_m, 0, box.high_m, 0});
+    const std::size_t at = pairs.size();
+    pairs.push_back({box, 0, 0});
     const std::size_t middle = divide(begin, end, box, depth);
     if (middle == begin) {
-      tree.nodes_[at].first = static_cast<std::uint32_t>(tree.corners_.size());
-      tree.nodes_[at].count = static_cast<std::uint32_t>(end - begin);
-      for (std::size_t n = begin; n < end; ++n) {
-        const glm::uvec3 t = mesh.triangles[items[n].triangle];
-        tree.corners_.push_back(
-            {{mesh.positions_m[t.x], mesh.positions_m[t.y], mesh.positions_m[t.z]}, items[n].triangle});
-      }
+      pairs[at].first = static_cast<std::uint32_t>(begin);
+      pairs[at].count = static_cast<std::uint32_t>(end - begin);
       return;
     }
     build(begin, middle, depth + 1);
-    tree.nodes_[at].first = static_cast<std::uint32_t>(tree.nodes_.size());
+    pairs[at].first = static_cast<std::uint32_t>(pairs.size());
     build(middle, end, depth + 1);
+  }
+
+  // Returns the first of the blocks that hold a leaf's triangles.
+  std::uint32_t add_blocks(const Pair& leaf) {
+    const auto first = static_cast<std::uint32_t>(tree.blocks_.size());
+    for (std::uint32_t n = 0; n < leaf.count; ++n) {
+      const std::uint32_t lane = n % kWidth;
+      if (lane == 0) tree.blocks_.emplace_back();
+      Block& block = tree.blocks_.back();
+      const std::uint32_t triangle = items[leaf.first + n].triangle;
+      block.used |= 1 << lane;
+      block.triangle[lane] = triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::vec3& p = mesh.positions_m[mesh.triangles[triangle][static_cast<int>(k)]];
+        for (std::size_t axis = 0; axis < 3; ++axis) block.corner_m[k][axis][lane] = p[static_cast<int>(axis)];
+      }
+    }
+    return first;
+  }
+
+  // Adds the node whose children are the up to four largest boxes below a pair. Returns its number.
+  std::uint32_t collapse(std::uint32_t pair) {
+    std::vector<std::uint32_t> children{pair};
+    while (children.size() < kWidth) {
+      std::size_t largest = children.size();
+      for (std::size_t n = 0; n < children.size(); ++n) {
+        if (pairs[children[n]].count > 0) continue;
+        if (largest == children.size() || pairs[children[n]].box.area() > pairs[children[largest]].box.area())
+          largest = n;
+      }
+      if (largest == children.size()) break;
+      const std::uint32_t opened = children[largest];
+      children[largest] = opened + 1;
+      children.push_back(pairs[opened].first);
+    }
+    const auto at = static_cast<std::uint32_t>(tree.nodes_.size());
+    tree.nodes_.emplace_back();
+    for (std::size_t lane = 0; lane < children.size(); ++lane) {
+      const Pair& child = pairs[children[lane]];
+      const std::uint32_t blocks = (child.count + kWidth - 1) / kWidth;
+      const std::uint32_t first = blocks > 0 ? add_blocks(child) : collapse(children[lane]);
+      Node& node = tree.nodes_[at];
+      node.used |= 1 << lane;
+      node.first[lane] = first;
+      node.blocks[lane] = blocks;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.low_m[axis][lane] = child.box.low_m[static_cast<int>(axis)];
+        node.high_m[axis][lane] = child.box.high_m[static_cast<int>(axis)];
+      }
+    }
+    return at;
   }
 };
 
 TriangleTree::TriangleTree(const Mesh& mesh) {
-  Builder builder{mesh, *this, {}};
+  Builder builder{mesh, *this, {}, {}};
   builder.items.reserve(mesh.triangles.size());
   for (std::uint32_t n = 0; n < mesh.triangles.size(); ++n) {
     BoxedTriangle item;
@@ -149,13 +203,15 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
     item.middle_m = 0.5F * (item.box.low_m + item.box.high_m);
     builder.items.push_back(item);
   }
-  corners_.reserve(mesh.triangles.size());
-  if (!builder.items.empty()) builder.build(0, builder.items.size(), 0);
+  if (builder.items.empty()) return;
+  builder.build(0, builder.items.size(), 0);
+  (void)builder.collapse(0);
   nodes_.shrink_to_fit();
+  blocks_.shrink_to_fit();
 }
 
 std::size_t TriangleTree::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(Corners);
+  return nodes_.capacity() * sizeof(Node) + blocks_.capacity() * sizeof(Block);
 }
 
 }  // namespace objects

@@ -1,4 +1,5 @@
-// A tree of boxes over the triangles of a mesh, for rays (Wald 2007: binned surface area heuristic).
+// A tree of boxes over the triangles of a mesh, for rays: four boxes or triangles at a time (Wald 2007: binned surface
+// area heuristic; Wald, Benthin and Boulos 2008: nodes of several boxes).
 //
 // Typical usage:
 //   const TriangleTree tree(mesh);
@@ -14,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "objects/model/floats4.h"
 #include "objects/model/mesh.h"
 
 namespace objects {
@@ -51,30 +53,36 @@ class TriangleTree {
   bool is_empty() const { return nodes_.empty(); }
 
  private:
-  // A node with count 0 is inner: its second child is `first`, its first child follows it.
+  using Lanes = simd::Floats4;
+  static constexpr std::uint32_t kWidth = 4;
+  // Up to four boxes and what is in them: an inner node, or triangles of blocks_.
   struct Node {
-    glm::vec3 low_m;
-    std::uint32_t first = 0;
-    glm::vec3 high_m;
-    std::uint32_t count = 0;
+    std::array<Lanes, 3> low_m{};
+    std::array<Lanes, 3> high_m{};
+    std::array<std::uint32_t, kWidth> first{};
+    std::array<std::uint32_t, kWidth> blocks{};  // 0: an inner node
+    int used = 0;                                // a bit for each
   };
-  struct Corners {
-    std::array<glm::vec3, 3> at_m;
-    std::uint32_t triangle;
+  // Up to four triangles, corner by corner.
+  struct Block {
+    std::array<std::array<Lanes, 3>, 3> corner_m{};  // [corner][axis]
+    std::array<std::uint32_t, kWidth> triangle{};
+    int used = 0;
   };
   // The ray's frame of the intersection test: the axis along which it is longest comes last.
   struct Shear {
-    int x, y, z;
+    std::size_t x, y, z;
     glm::vec3 origin_m;
     glm::vec3 factor;
   };
   struct Builder;
 
   static Shear shear_of(const ModelRay& ray);
-  static std::optional<TriangleHit> hit(const Shear& shear, const Corners& corners);
+  // Writes the hits among a block's triangles, and returns a bit for each.
+  static int hits_of(const Shear& shear, const Block& block, std::array<TriangleHit, kWidth>& hits);
 
   std::vector<Node> nodes_;
-  std::vector<Corners> corners_;
+  std::vector<Block> blocks_;
 };
 
 // Half-width of the interval in which the rounding of a box test's t lies, relative to t.
@@ -88,55 +96,60 @@ std::optional<TriangleHit> TriangleTree::nearest(const ModelRay& ray, float unti
   const Shear shear = shear_of(ray);
   // No component is 0, so that no product below is NaN.
   constexpr float kLeast = 1e-30F;
-  glm::vec3 inverse;
-  for (int k = 0; k < 3; ++k)
-    inverse[k] = 1.0F / (std::abs(ray.direction[k]) < kLeast ? std::copysign(kLeast, ray.direction[k])
-                                                             : ray.direction[k]);
-  // Returns where the ray enters a box, or infinity if it misses it.
-  const auto enter = [&](const Node& node, float end) {
-    float from = 0;
-    float to = end;
-    for (int k = 0; k < 3; ++k) {
-      const float a = (node.low_m[k] - ray.origin_m[k]) * inverse[k];
-      const float b = (node.high_m[k] - ray.origin_m[k]) * inverse[k];
-      from = std::max(from, std::min(a, b));
-      to = std::min(to, std::max(a, b) * (1.0F + kBoxTestError));
-    }
-    return from * (1.0F - kBoxTestError) <= to ? from : std::numeric_limits<float>::infinity();
-  };
+  std::array<Lanes, 3> inverse;
+  std::array<Lanes, 3> origin_m;
+  for (int k = 0; k < 3; ++k) {
+    const float d = ray.direction[k];
+    inverse[static_cast<std::size_t>(k)] =
+        simd::all(1.0F / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d));
+    origin_m[static_cast<std::size_t>(k)] = simd::all(ray.origin_m[k]);
+  }
   struct Entry {
     std::uint32_t node;
+    std::uint32_t blocks;
     float t;
   };
-  std::array<Entry, kMostTreeDepth> stack;
-  int top = 0;
+  std::array<Entry, 3 * kMostTreeDepth + 1> stack;
+  std::size_t top = 0;
   float end = until;
-  if (const float t = enter(nodes_[0], end); t != std::numeric_limits<float>::infinity())
-    stack[0] = {0, t}, top = 1;
+  stack[top++] = {0, 0, 0};
   while (top > 0) {
-    const Entry at = stack[static_cast<std::size_t>(--top)];
+    const Entry at = stack[--top];
     if (at.t * (1.0F - kBoxTestError) > end) continue;
-    const Node& node = nodes_[at.node];
-    if (node.count > 0) {
-      for (std::uint32_t n = node.first; n < node.first + node.count; ++n) {
-        const std::optional<TriangleHit> found = hit(shear, corners_[n]);
-        if (!found || !(found->t < end || (best && found->t == best->t && found->triangle < best->triangle)))
-          continue;
-        if (!accept(*found)) continue;
-        best = found;
-        end = found->t;
+    if (at.blocks > 0) {
+      std::array<TriangleHit, kWidth> hits;
+      for (std::uint32_t n = at.node; n < at.node + at.blocks; ++n) {
+        const int found = hits_of(shear, blocks_[n], hits);
+        for (std::size_t lane = 0; found >> lane != 0; ++lane) {
+          const TriangleHit& hit = hits[lane];
+          if ((found >> lane & 1) == 0) continue;
+          if (!(hit.t < end || (best && hit.t == best->t && hit.triangle < best->triangle))) continue;
+          if (!accept(hit)) continue;
+          best = hit;
+          end = hit.t;
+        }
       }
       continue;
     }
-    const std::uint32_t left = at.node + 1;
-    const std::uint32_t right = node.first;
-    const float tl = enter(nodes_[left], end);
-    const float tr = enter(nodes_[right], end);
-    const bool right_first = tr < tl;
-    const Entry near{right_first ? right : left, right_first ? tr : tl};
-    const Entry far{right_first ? left : right, right_first ? tl : tr};
-    if (far.t != std::numeric_limits<float>::infinity()) stack[static_cast<std::size_t>(top++)] = far;
-    if (near.t != std::numeric_limits<float>::infinity()) stack[static_cast<std::size_t>(top++)] = near;
+    const Node& node = nodes_[at.node];
+    Lanes from = simd::all(0);
+    Lanes to = simd::all(end);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Lanes a = (node.low_m[k] - origin_m[k]) * inverse[k];
+      const Lanes b = (node.high_m[k] - origin_m[k]) * inverse[k];
+      from = simd::max(from, simd::min(a, b));
+      to = simd::min(to, simd::max(a, b) * simd::all(1.0F + kBoxTestError));
+    }
+    const int entered = simd::bits(from * simd::all(1.0F - kBoxTestError) <= to) & node.used;
+    // From the farthest to the nearest, so that the nearest is taken first.
+    const std::size_t begin = top;
+    for (std::size_t lane = 0; entered >> lane != 0; ++lane) {
+      if ((entered >> lane & 1) == 0) continue;
+      const Entry child{node.first[lane], node.blocks[lane], from[lane]};
+      std::size_t place = top++;
+      for (; place > begin && stack[place - 1].t < child.t; --place) stack[place] = stack[place - 1];
+      stack[place] = child;
+    }
   }
   return best;
 }
@@ -147,39 +160,48 @@ inline TriangleTree::Shear TriangleTree::shear_of(const ModelRay& ray) {
   s.z = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   s.x = (s.z + 1) % 3;
   s.y = (s.z + 2) % 3;
-  if (ray.direction[s.z] < 0) std::swap(s.x, s.y);  // keeps the winding
-  s.factor = {ray.direction[s.x] / ray.direction[s.z], ray.direction[s.y] / ray.direction[s.z],
-              1.0F / ray.direction[s.z]};
+  const auto along = [&](std::size_t axis) { return ray.direction[static_cast<int>(axis)]; };
+  if (along(s.z) < 0) std::swap(s.x, s.y);  // keeps the winding
+  s.factor = {along(s.x) / along(s.z), along(s.y) / along(s.z), 1.0F / along(s.z)};
   s.origin_m = ray.origin_m;
   return s;
 }
 
-inline std::optional<TriangleHit> TriangleTree::hit(const Shear& s, const Corners& corners) {
-  glm::vec3 x, y, z;
-  for (int k = 0; k < 3; ++k) {
-    const glm::vec3 p = corners.at_m[static_cast<std::size_t>(k)] - s.origin_m;
-    z[k] = s.factor.z * p[s.z];
-    x[k] = p[s.x] - s.factor.x * p[s.z];
-    y[k] = p[s.y] - s.factor.y * p[s.z];
+inline int TriangleTree::hits_of(const Shear& s, const Block& block, std::array<TriangleHit, kWidth>& hits) {
+  const auto origin = [&](std::size_t axis) { return simd::all(s.origin_m[static_cast<int>(axis)]); };
+  std::array<Lanes, 3> x, y, z;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lanes forward = block.corner_m[k][s.z] - origin(s.z);
+    z[k] = simd::all(s.factor.z) * forward;
+    x[k] = (block.corner_m[k][s.x] - origin(s.x)) - simd::all(s.factor.x) * forward;
+    y[k] = (block.corner_m[k][s.y] - origin(s.y)) - simd::all(s.factor.y) * forward;
   }
-  float a = x[2] * y[1] - y[2] * x[1];
-  float b = x[0] * y[2] - y[0] * x[2];
-  float c = x[1] * y[0] - y[1] * x[0];
-  if (a == 0.0F || b == 0.0F || c == 0.0F) {
+  Lanes a = x[2] * y[1] - y[2] * x[1];
+  Lanes b = x[0] * y[2] - y[0] * x[2];
+  Lanes c = x[1] * y[0] - y[1] * x[0];
+  const Lanes none = simd::all(0);
+  if (const int flat = simd::bits((a == none) | (b == none) | (c == none)) & block.used; flat != 0) {
     // On an edge as far as floats know: products of two floats are exact in double.
     const auto cross = [](float p, float q, float r, float t) {
-      return static_cast<float>(static_cast<double>(p) * q - static_cast<double>(r) * t);
+      return static_cast<float>(static_cast<double>(p) * static_cast<double>(q) -
+                                static_cast<double>(r) * static_cast<double>(t));
     };
-    a = cross(x[2], y[1], y[2], x[1]);
-    b = cross(x[0], y[2], y[0], x[2]);
-    c = cross(x[1], y[0], y[1], x[0]);
+    for (std::size_t n = 0; n < kWidth; ++n) {
+      if ((flat >> n & 1) == 0) continue;
+      a[n] = cross(x[2][n], y[1][n], y[2][n], x[1][n]);
+      b[n] = cross(x[0][n], y[2][n], y[0][n], x[2][n]);
+      c[n] = cross(x[1][n], y[0][n], y[1][n], x[0][n]);
+    }
   }
-  if ((a < 0 || b < 0 || c < 0) && (a > 0 || b > 0 || c > 0)) return std::nullopt;
-  const float sum = a + b + c;
-  if (sum == 0.0F) return std::nullopt;
-  const float t = (a * z[0] + b * z[1] + c * z[2]) / sum;
-  if (!(t >= 0)) return std::nullopt;
-  return TriangleHit{t, b / sum, c / sum, corners.triangle, sum < 0};
+  const Lanes sum = a + b + c;
+  const auto some_below = (a < none) | (b < none) | (c < none);
+  const auto some_above = (a > none) | (b > none) | (c > none);
+  const Lanes t = (a * z[0] + b * z[1] + c * z[2]) / sum;
+  const int found = simd::bits(~(some_below & some_above) & (sum != none) & (t >= none)) & block.used;
+  for (std::size_t n = 0; found >> n != 0; ++n) {
+    if ((found >> n & 1) != 0) hits[n] = {t[n], b[n] / sum[n], c[n] / sum[n], block.triangle[n], sum[n] < 0};
+  }
+  return found;
 }
 
 }  // namespace objects

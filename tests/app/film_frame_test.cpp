@@ -105,6 +105,7 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
       other = info.key == "palette"         ? "viridis"
               : info.key == "sun"           ? "2026-11-20T12:00Z"
               : info.key == "overlay.names" ? "/dev/null"
+              : info.key == "scene"         ? VPE_SOURCE_DIR "/scripts/scenes/gale.scene.toml"
                                             : "Other";
     }
     if (info.type == vpe::core::SettingType::kNumber && info.max < 1)

@@ -36,7 +36,7 @@ TEST_F(SceneCommands, ObjectDescribesAModel) {
   EXPECT_NEAR(json["low_m"][2].get<double>(), 0, 0.01);    // it stands on its wheels
   EXPECT_NEAR(json["high_m"][2].get<double>(), 2.1, 0.1);  // the head of its mast
   EXPECT_GT(json["high_m"][1].get<double>(), 1.5);         // the arm is ahead
-  ASSERT_GT(json["levels"].size(), 2U);
+  ASSERT_GE(json["levels"].size(), 2U);
   EXPECT_EQ(json["levels"][0]["geometric_error_m"], 0);
   EXPECT_NE(vpe({"object", rover()}).out.find("triangles"), std::string::npos);
 }

@@ -491,7 +491,9 @@ TEST(Flight, ExamplesCanBeFlown) {
       const auto terrain = [&](mars::LonLat, double x) { return x * terrain_m; };
       const Path path(*parsed.flight, mars::kMarsRadius_m, terrain);
       EXPECT_GE(path.duration_s(), 3.0) << entry.path();
-      EXPECT_GE(lowest_clearance(path, parsed.flight->view.fps, terrain)->height_m, 2500.0) << entry.path();
+      // One flies past objects, just above the ground.
+      const double least_m = entry.path().stem() == "gale-objects" ? 2.0 : 2500.0;
+      EXPECT_GE(lowest_clearance(path, parsed.flight->view.fps, terrain)->height_m, least_m) << entry.path();
     }
   }
   EXPECT_GE(files, 3);

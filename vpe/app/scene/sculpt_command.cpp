@@ -35,8 +35,9 @@ struct SculptArguments {
   std::string output;
 };
 
-// Returns the colour of "#rrggbb".
-std::optional<base::Rgb> parse_rgb(const std::string& text) {
+// Returns the colour of "#rrggbb" or "rrggbb", which shells take as it is.
+std::optional<base::Rgb> parse_rgb(std::string text) {
+  if (text.size() == 6) text.insert(0, 1, '#');
   if (text.size() != 7 || text.front() != '#') return std::nullopt;
   std::array<std::uint8_t, 3> channels{};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -82,7 +83,7 @@ void run_sculpt(const SculptArguments& a, const Common& common) {
   if (a.background != "corner" && !parse_rgb(a.background))
     throw UsageError(
         "--background '" + a.background +
-        "': expected a colour such as '#d0c8c0', or corner, that of each photograph's upper left pixel");
+        "': expected a colour such as d0c8c0, or corner, that of each photograph's upper left pixel");
   const std::vector<Photograph> photographs = photographs_of(a);
   if (!a.contours.empty() && a.contours.size() != photographs.size())
     throw UsageError("--contour was given " + std::to_string(a.contours.size()) + " times for " +
@@ -132,7 +133,7 @@ void add_sculpt(CLI::App& program, Common& common) {
   command->add_option("--size", arguments->size, "LENGTH,WIDTH,HEIGHT of the object, metres")->required();
   command
       ->add_option("--background", arguments->background,
-                   "Colour of the background, '#rrggbb', or corner: that of each photograph's upper left pixel")
+                   "Colour of the background, rrggbb, or corner: that of each photograph's upper left pixel")
       ->capture_default_str();
   command
       ->add_option("--background-tolerance", arguments->tolerance,
@@ -153,8 +154,10 @@ void add_sculpt(CLI::App& program, Common& common) {
   add_examples(
       *command,
       {{"a tank from three photographs on a grey wall",
-        "vpe sculpt side.png front.png top.png --size 6.9,3.4,2.4 --background '#d0c8c0' -o tank.sticks"},
-       {"what it holds", "vpe object tank.sticks"}});
+        "vpe sculpt side.png front.png top.png --size 6.9,3.4,2.4 --background d0c8c0 -o tank.sticks"},
+       {"with the outlines of the tank in the photographs",
+        "vpe sculpt side.png front.png top.png --size 6.9,3.4,2.4 --contour side.txt --contour front.txt "
+        "--contour top.txt -o tank.sticks"}});
   command->callback([arguments, &common] { run_sculpt(*arguments, common); });
 }
 
