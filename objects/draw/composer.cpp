@@ -30,7 +30,8 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
   const ObjectRays rays(scene, rule);
   const SunGrid before_sun =
       is_lit(light.request.settings) && !frame.colour.empty() ? SunGrid(rays, light.request.sun) : SunGrid();
-  SquarePainter::Image image{rays, before_sun, light, only, 1, 1 / rule.focal_px};
+  const ViewRays view_rays(light.request.view);
+  SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px};
   const vpe::core::SettingsValues& settings = light.request.settings;
   if (only.empty() && (settings.samples > 1 || settings.smooth_edges)) image.samples = 8;
 

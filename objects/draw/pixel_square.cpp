@@ -7,14 +7,24 @@ namespace objects {
 
 using vpe::core::Projection;
 
-ViewCone cone_of(const vpe::core::View& view, const PixelSquare& s, double margin_px) {
+ViewRays::ViewRays(const vpe::core::View& view)
+    : view_(view), is_perspective_(view.projection == Projection::kPerspective) {
+  if (!is_perspective_) return;
+  const mars::Axes& axes = view.camera.axes;
+  right_ = axes.right;
+  down_ = -axes.up;
+  const glm::dvec2 principal = 0.5 * glm::dvec2(view.width, view.height) + view.principal_offset_px;
+  corner_ = vpe::core::focal_px(view) * axes.forward - principal.x * right_ - principal.y * down_;
+}
+
+ViewCone cone_of(const vpe::core::View& view, const ViewRays& rays, const PixelSquare& s, double margin_px) {
   const vpe::core::SubRectangle part = vpe::core::drawn_part(view);
   const double left = part.x + s.x0 - margin_px;
   const double right = part.x + s.x1 + margin_px;
   const double top = part.y + s.y0 - margin_px;
   const double bottom = part.y + s.y1 + margin_px;
   ViewCone cone;
-  cone.axis = vpe::core::pixel_ray(view, 0.5 * (left + right), 0.5 * (top + bottom));
+  cone.axis = rays.at(0.5 * (left + right), 0.5 * (top + bottom));
   cone.cosine = 1;
   // Sides of round images are no great circles, so their middles count too.
   const bool is_round = view.projection != Projection::kPerspective;
@@ -22,7 +32,7 @@ ViewCone cone_of(const vpe::core::View& view, const PixelSquare& s, double margi
   for (int n = 0; n <= steps; ++n) {
     const double x = left + (right - left) * n / steps;
     for (const double y : {top, bottom, 0.5 * (top + bottom)})
-      cone.cosine = std::min(cone.cosine, glm::dot(cone.axis, vpe::core::pixel_ray(view, x, y)));
+      cone.cosine = std::min(cone.cosine, glm::dot(cone.axis, rays.at(x, y)));
   }
   double angle = std::acos(std::clamp(cone.cosine, -1.0, 1.0));
   angle = std::min(glm::pi<double>(), angle * (is_round ? 1.1 : 1.0) + 1e-7);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -21,8 +22,30 @@ struct PixelSquare {
   int y1 = 0;
 };
 
+// Gives the rays of a view's pixels: those of core::pixel_ray(), for perspective views in a fraction of the time.
+class ViewRays {
+ public:
+  // The view must outlive this.
+  explicit ViewRays(const vpe::core::View& view);
+
+  // Returns the unit direction through a place of the full image. Differs from pixel_ray() by rounding, 1e-15.
+  glm::dvec3 at(double x, double y) const {
+    if (!is_perspective_) return vpe::core::pixel_ray(view_, x, y);
+    const glm::dvec3 d = corner_ + x * right_ + y * down_;
+    return d / glm::length(d);
+  }
+
+ private:
+  const vpe::core::View& view_;
+  bool is_perspective_;
+  glm::dvec3 corner_{0, 0, 0};
+  glm::dvec3 right_{0, 0, 0};
+  glm::dvec3 down_{0, 0, 0};
+};
+
 // Returns a cone that holds the rays of a square's pixels and of `margin_px` around them. Pure.
-ViewCone cone_of(const vpe::core::View& view, const PixelSquare& square, double margin_px);
+ViewCone cone_of(const vpe::core::View& view, const ViewRays& rays, const PixelSquare& square,
+                 double margin_px);
 
 // Returns the solid angle of a pixel in a direction (unit, body-fixed) that the view shows, steradians. Pure.
 double pixel_solid_angle(const vpe::core::View& view, const glm::dvec3& direction);

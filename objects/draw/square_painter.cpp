@@ -54,7 +54,7 @@ SquarePainter::SquarePainter(const Image& image, const vpe::core::Frame& frame, 
       square_(square),
       frame_width_(frame.width),
       ground_(frame, square) {
-  const ViewCone cone = cone_of(view_, square, 1.5);
+  const ViewCone cone = cone_of(view_, image.view_rays, square, 1.5);
   near_to_far_ = image_.rays.in_cone(cone, ground_.farthest_m());
   if (!frame.colour.empty() && ground_.has_ground())
     may_be_shaded_ = find_shadows(cone, ground_.nearest_m(), ground_.farthest_ground_m());
@@ -79,7 +79,7 @@ bool SquarePainter::is_wanted(int x, int y) const {
 
 SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
   SubSquare part{square, {}, false, {}};
-  const ViewCone cone = cone_of(view_, square, 1);
+  const ViewCone cone = cone_of(view_, image_.view_rays, square, 1);
   double near_m = std::numeric_limits<double>::infinity();
   double far_m = 0;
   double until_m = 0;
@@ -107,19 +107,16 @@ SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const
 
 ObjectRay SquarePainter::ray_of(int x, int y, const glm::dvec2& offset) const {
   return {view_.camera.position_m,
-          vpe::core::pixel_ray(view_, drawn_part_.x + x + 0.5 + offset.x, drawn_part_.y + y + 0.5 + offset.y)};
+          image_.view_rays.at(drawn_part_.x + x + 0.5 + offset.x, drawn_part_.y + y + 0.5 + offset.y)};
 }
 
-ObjectColour SquarePainter::object_sample(const SubSquare& part, int x, int y, const glm::dvec2& offset,
-                                          std::uint32_t* front) {
-  const ObjectRay ray = ray_of(x, y, offset);
-  const double until_m = ground_.beside(x, y, offset);
+ObjectColour SquarePainter::object_at(const SubSquare& part, const ObjectRay& ray, double until_m,
+                                      std::uint32_t& front) {
   nearest_object(near_to_far_, part.near_to_far, ray, until_m, image_.pixel_rad, scratch_);
   if (!scratch_.has_front && scratch_.layers.empty()) return {};
-  if (front != nullptr)
-    *front =
-        1 +
-        near_to_far_[scratch_.layers.empty() ? scratch_.front.object : scratch_.layers.front().object].instance;
+  front =
+      1 +
+      near_to_far_[scratch_.layers.empty() ? scratch_.front.object : scratch_.layers.front().object].instance;
   return shader_->colour(ray, scratch_);
 }
 
@@ -159,8 +156,17 @@ double SquarePainter::light_sample(int x, int y, const glm::dvec2& offset) const
 
 void SquarePainter::see_pixel(const SubSquare& part, int x, int y) {
   SeenPixel& seen = seen_at(x, y);
-  if (!part.near_to_far.empty()) seen.object = object_sample(part, x, y, {0, 0}, &seen.front);
-  if (part.may_be_shaded && seen.object.over.w < 1) seen.light = static_cast<float>(light_sample(x, y, {0, 0}));
+  const ObjectRay ray = ray_of(x, y, {0, 0});
+  const auto range_m = static_cast<double>(ground_.at(x, y));
+  if (!part.near_to_far.empty()) seen.object = object_at(part, ray, range_m, seen.front);
+  if (part.may_be_shaded && seen.object.over.w < 1 && !std::isinf(range_m))
+    seen.light = static_cast<float>(image_.before_sun.light_at(ray.origin_m + range_m * ray.direction));
+}
+
+// Most pixels beside one are in the same square.
+const SeenPixel* SquarePainter::beside(int x, int y, const Seen& seen) const {
+  const bool is_inside = x >= square_.x0 && x < square_.x1 && y >= square_.y0 && y < square_.y1;
+  return is_inside ? &at(x, y) : seen(x, y);
 }
 
 void SquarePainter::see() {
@@ -171,7 +177,7 @@ void SquarePainter::see() {
   for (int y = square_.y0; y < square_.y1; y += kGroup_px) {
     for (int x = square_.x0; x < square_.x1; x += kGroup_px) {
       const PixelSquare group{x, y, std::min(x + kGroup_px, square_.x1), std::min(y + kGroup_px, square_.y1)};
-      const ViewCone cone = cone_of(view_, group, 1);
+      const ViewCone cone = cone_of(view_, image_.view_rays, group, 1);
       ObjectNumbers among;
       for (const std::uint32_t n : all) {
         const SceneBall& ball = near_to_far_[n].around;
@@ -204,7 +210,7 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
   if (image_.samples > 1) {
     constexpr std::array<glm::ivec2, 4> kBeside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
     for (const glm::ivec2& d : kBeside) {
-      const SeenPixel* other = seen(x + d.x, y + d.y);
+      const SeenPixel* other = beside(x + d.x, y + d.y, seen);
       if (other == nullptr) continue;
       is_edge = is_edge || other->front != here.front;
       is_shadow_edge = is_shadow_edge || std::abs(other->light - here.light) > kShadowEdge;
@@ -216,6 +222,7 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
     for (const SmallObject& s : part.small)
       is_edge = is_edge || glm::distance(s.middle_px, middle_px) < s.reach_px;
   }
+  if (!is_edge && !is_shadow_edge && !(here.object.over.w > 0) && here.light >= 1) return;
   ObjectColour object = here.object;
   double light = static_cast<double>(here.light);
   if (is_edge && !part.near_to_far.empty()) object.over = smooth_sample(part, x, y);

@@ -26,6 +26,7 @@ class SquarePainter {
   struct Image {
     const ObjectRays& rays;
     const SunGrid& before_sun;
+    const ViewRays& view_rays;
     ImageLight light;
     std::span<const std::uint8_t> only;
     int samples = 1;       // at edges; 1: edges are not smoothed
@@ -71,10 +72,10 @@ class SquarePainter {
   SubSquare part_of(const PixelSquare& square, const ObjectNumbers& among) const;
   void see_parts(const PixelSquare& square, const ObjectNumbers& among);
   ObjectRay ray_of(int x, int y, const glm::dvec2& offset) const;
-  ObjectColour object_sample(const SubSquare& part, int x, int y, const glm::dvec2& offset,
-                             std::uint32_t* front);
+  ObjectColour object_at(const SubSquare& part, const ObjectRay& ray, double until_m, std::uint32_t& front);
   double light_sample(int x, int y, const glm::dvec2& offset) const;
   glm::dvec4 smooth_sample(const SubSquare& part, int x, int y);
+  const SeenPixel* beside(int x, int y, const Seen& seen) const;
   void see_pixel(const SubSquare& part, int x, int y);
   void paint_pixel(const SubSquare& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
   void paint_small(const Seen& seen, vpe::core::Frame& frame);
