@@ -9,7 +9,6 @@
 
 #include "lod/options.h"
 #include "lod/select.h"
-#include "tests/support/sanitized.h"
 #include "tests/window/explore_window_fixture.h"
 
 namespace vpe::window {
@@ -150,11 +149,8 @@ TEST_P(DragTest, AChangeOfAppearanceKeepsTheGroundThatIsSeen) {
     const std::int64_t before = window_->images();
     for (int n = 0; n < 3000 && window_->images() == before; ++n) iterate(1);
     ASSERT_GT(window_->images(), before) << key;
-    // The image waits for new tiles for a while, which a sanitized program may take longer for.
-    if (!test_support::kIsSanitized) {
-      EXPECT_GE(finest_level(*window_), at_rest - 1) << key << " " << value;
-      EXPECT_TRUE(window_->drawn()->result.missing.empty()) << key << " " << value;
-    }
+    EXPECT_GE(finest_level(*window_), at_rest - 1) << key << " " << value;
+    EXPECT_TRUE(window_->drawn()->result.missing.empty()) << key << " " << value;
     settle();
   }
 }
