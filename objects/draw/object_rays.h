@@ -17,7 +17,7 @@
 
 namespace objects {
 
-// The rule by which the levels of models follow from their distance.
+// Says how the levels of models follow from their distance.
 struct LevelRule {
   glm::dvec3 camera_m{0, 0, 0};
   double focal_px = 1;      // pixels of a unit of tangent at the image's middle
@@ -27,14 +27,14 @@ struct LevelRule {
   double least_ray_px = 1.5;
 };
 
-// The size, across, below which an object is not drawn. From there to kFullDiameter_px it fades in.
+// Gives the size, across, below which an object is not drawn. From there to kFullDiameter_px it fades in.
 inline constexpr double kLeastDiameter_px = 0.5;
 inline constexpr double kFullDiameter_px = 1.0;
-// Sizes from which on rays meet an object: with several rays in each pixel at edges, and with one.
+// Give the sizes from which on rays meet an object: with several rays in each pixel at edges, and with one.
 inline constexpr double kSmoothRayDiameter_px = 1.5;
 inline constexpr double kHardRayDiameter_px = 3;
 
-// An instance with what rays need.
+// Holds an instance with what rays need.
 struct PlacedObject {
   const Model* model = nullptr;
   const Model::Level* level = nullptr;  // null: of sticks
@@ -53,7 +53,7 @@ struct PlacedObject {
   double ball_radius_m = 0;  // model frame
 };
 
-// All directions within an angle of an axis.
+// Holds all directions within an angle of an axis.
 struct ViewCone {
   glm::dvec3 axis{0, 0, 1};  // unit
   double cosine = 1;
@@ -62,7 +62,7 @@ struct ViewCone {
 // Returns whether a ball reaches into a cone about `origin_m`. Never false for one that does.
 bool meets(const ViewCone& cone, const glm::dvec3& origin_m, const glm::dvec3& centre_m, double radius_m);
 
-// A place where a ray meets an object.
+// Describes a place where a ray meets an object.
 struct ObjectHit {
   double range_m = 0;  // along the unit ray
   std::uint32_t object = 0;
@@ -78,7 +78,7 @@ struct ObjectRay {
   glm::dvec3 direction;  // unit
 };
 
-// What a ray meets: semi-transparent places from near to far, then at most one opaque place behind them.
+// Holds what a ray meets: semi-transparent places from near to far, then at most one opaque place behind them.
 struct RayResult {
   std::vector<ObjectHit> layers;
   ObjectHit front;
@@ -108,7 +108,7 @@ class ObjectRays {
   LevelRule rule_;
 };
 
-// Numbers of objects in a list of them.
+// Names objects by their numbers in a list.
 using ObjectNumbers = std::vector<std::uint32_t>;
 ObjectNumbers all_of(std::span<const PlacedObject> objects);
 

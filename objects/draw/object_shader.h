@@ -12,14 +12,14 @@
 
 namespace objects {
 
-// The light and the air of an image.
+// Describes the light and the air of an image.
 struct ImageLight {
   const vpe::core::DrawRequest& request;
   double planet_radius_m = 0;
   const vpe::core::GroundLight* ground = nullptr;  // null: the ground hides no sun
 };
 
-// What haze does along a ray: a colour becomes transmitted * colour + added.
+// Says what haze does along a ray: a colour becomes transmitted * colour + added.
 struct Haze {
   double transmitted = 1;
   glm::dvec3 added{0, 0, 0};
@@ -29,10 +29,10 @@ Haze haze_at(const ImageLight& light, const glm::dvec3& direction, double range_
 // Returns whether the sun lights what an image shows.
 bool is_lit(const vpe::core::Appearance& appearance);
 
-// A pixel's or a sample's part of the image that objects cover.
+// Holds what objects cover of a pixel or a sample.
 struct ObjectColour {
   glm::dvec4 over{0, 0, 0, 0};  // 0 to 255, premultiplied; opacity 0 to 1
-  // Where the opacity passes a half; infinity: nowhere.
+  // Says where the opacity passes a half; infinity: nowhere.
   double range_m = std::numeric_limits<double>::infinity();
 };
 
@@ -49,7 +49,7 @@ class ObjectShader {
   glm::dvec3 mean_colour(const PlacedObject& object) const;
 
  private:
-  // A place of a surface, without light; normals are unit and body-fixed.
+  // Describes a place of a surface, without light; normals are unit and body-fixed.
   struct Surface {
     glm::dvec4 colour;  // 0 to 255, with the opacity
     glm::dvec3 plane;

@@ -12,7 +12,7 @@ namespace objects {
 
 inline constexpr int kSquare_px = 64;
 
-// What the first step found at a pixel.
+// Holds what the first step found at a pixel.
 struct SeenPixel {
   std::uint32_t front = 0;  // 1 + instance of the first surface that is met; 0: none
   float light = 1;          // of the sun on the ground there
@@ -55,7 +55,7 @@ class SquarePainter {
   const Drawn& drawn() const { return drawn_; }
 
  private:
-  // A smaller square and what may show in it.
+  // Describes a smaller square and what may show in it.
   struct SmallObject {
     glm::dvec2 middle_px;  // of the full image
     double reach_px;

@@ -29,7 +29,7 @@ class SunGrid {
   double light_at(const glm::dvec3& place_m) const;
 
  private:
-  // A ball of an object: its place across the rays, along them, and its radius.
+  // Describes the ball of an object: its place across the rays, along them, and its radius.
   struct Disc {
     double u_m;
     double v_m;

@@ -24,7 +24,7 @@ struct MeshStream {
   std::string advice;              // what to do about the error
 };
 
-// Limits that both functions enforce.
+// Gives the limits that both functions enforce.
 struct MeshStreamLimits {
   static constexpr std::size_t kMostNotes = 1000;
   static constexpr std::size_t kLongestText_bytes = 4096;

@@ -22,10 +22,10 @@ namespace objects {
 struct ModelFileOptions {
   double unit_m = 1;  // the length of the file's unit; above 0
   UpAxis up = UpAxis::kAuto;
-  // The address space that the reader may use, 0.25 to 1024. 0.4 is enough for an STL of 2 million triangles without
+  // Limits the address space of the reader, 0.25 to 1024. 0.4 is enough for an STL of 2 million triangles without
   // textures (measured), so that a triangle takes some 200 bytes.
   double memory_gb = 2;
-  // The processor time that the reader may take, 1 to 1e6.
+  // Limits the processor time of the reader, 1 to 1e6.
   double time_s = 120;
 };
 

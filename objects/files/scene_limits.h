@@ -1,4 +1,4 @@
-// What values scene files may have, and how messages name them. Shared by the readers of TOML and GeoJSON.
+// Says what values scene files may have, and how messages name them. Shared by the readers of TOML and GeoJSON.
 #pragma once
 
 #include <filesystem>

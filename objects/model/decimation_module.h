@@ -1,4 +1,4 @@
-// What decimation.cpp tells OpenMesh's decimater. No other source includes this.
+// Tells OpenMesh's decimater what decimation.cpp wants. No other source includes this.
 #pragma once
 
 // OpenMesh's headers do not pass our warnings when their templates are instantiated.
@@ -51,11 +51,11 @@ struct Surface {
   std::size_t left = 0;  // faces that are not deleted
 };
 
-// How much the place of a border counts, in areas of the square over each of its edges.
+// Says how much the place of a border counts, in areas of the square over each of its edges.
 inline constexpr double kBorderWeight = 4;
-// Of two collapses that move the surface alike, that of the shorter edge comes first.
+// Puts the shorter edge first of two whose collapses move the surface alike.
 inline constexpr double kLengthWeight = 1e-8;
-// A triangle may turn by less than 78 degrees in a collapse, a thin one by less than 26: it would show as a
+// Lets a triangle turn by less than 78 degrees in a collapse, a thin one by less than 26: it would show as a
 // dark line.
 inline constexpr double kCosineOfTurn = 0.2;
 inline constexpr double kCosineOfThinTurn = 0.9;

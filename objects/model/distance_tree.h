@@ -49,7 +49,7 @@ class DistanceTree {
   double extent_m() const { return extent_m_; }
 
  private:
-  // A node with count 0 is inner: its second child is `first`, its first child follows it.
+  // Holds a box; one with count 0 is inner: its second child is `first`, its first child follows it.
   struct Node {
     glm::vec3 low_m;
     std::uint32_t first = 0;

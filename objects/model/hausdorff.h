@@ -19,7 +19,7 @@ namespace objects {
 // convex set is convex. Triangles whose bound by that is too large are divided where the nearest triangle
 // changes.
 double hausdorff_bound(const Mesh& a, const Mesh& b, double tolerance_m);
-// The same of trees that are already there.
+// Returns the same of trees that are already there.
 double hausdorff_bound(const DistanceTree& a, const DistanceTree& b, double tolerance_m);
 
 }  // namespace objects

@@ -50,7 +50,7 @@ struct Mesh {
   std::size_t bytes() const;
 };
 
-// Limits that check() enforces, so that no file can claim all memory.
+// Gives the limits that check() enforces, so that no file can claim all memory.
 struct MeshLimits {
   static constexpr std::size_t kMostVertices = 50'000'000;
   static constexpr std::size_t kMostTriangles = 50'000'000;
@@ -64,7 +64,7 @@ struct MeshLimits {
 // arrays, coordinates that are not finite or exceed the limits, no triangle. Pure.
 std::string check(const Mesh& mesh);
 
-// A ball around the vertices. The radius is at most 1.1 times that of the smallest one, and rounded up.
+// Encloses the vertices in a ball. The radius is at most 1.1 times that of the smallest one, and rounded up.
 struct Ball {
   glm::vec3 centre_m{0, 0, 0};
   float radius_m = 0;

@@ -6,7 +6,7 @@
 
 namespace objects {
 
-// A mesh whose surface and that of level 0 lie within geometric_error_m of each other everywhere (Hausdorff distance, a
+// Holds a mesh whose surface and that of level 0 lie within geometric_error_m of each other everywhere (Hausdorff distance, a
 // bound).
 struct MeshLevel {
   Mesh mesh;

@@ -7,7 +7,7 @@
 
 namespace objects {
 
-// The cosine of 40 degrees: edges that bend more stay sharp.
+// Gives the cosine of 40 degrees: edges that bend more stay sharp.
 inline constexpr double kCosineOfSharp = 0.76604444311897804;
 
 // Returns the cross product of a triangle's sides in double: twice its area long, 0 of a triangle without area.

@@ -20,7 +20,7 @@
 
 namespace objects {
 
-// A ray in the model frame. Its origin should be about as far from the model as the model is large: the error of a hit
+// Describes a ray in the model frame. Its origin should be about as far from the model as the model is large: the error of a hit
 // is in proportion to both.
 struct ModelRay {
   glm::vec3 origin_m;

@@ -4,58 +4,29 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "objects/draw/composer.h"
 #include "objects/draw/single_ray.h"
-#include "objects/model/mesh_levels.h"
-#include "objects/model/shapes.h"
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/voxelise.h"
+#include "tests/objects/composer_fixture.h"
 
 namespace objects {
 namespace {
 
-namespace core = vpe::core;
-
-constexpr double kPlanetRadius_m = 3.4e6;
-
-core::DrawRequest looking_north() {
-  core::DrawRequest r;
-  r.view.camera.position_m = {kPlanetRadius_m + 2, 0, 0};
-  r.view.camera.axes.forward = {0, 0, 1};
-  r.view.camera.axes.up = {1, 0, 0};
-  r.view.camera.axes.right = glm::cross(r.view.camera.axes.forward, r.view.camera.axes.up);
+core::DrawRequest looking_ahead() {
+  core::DrawRequest r = request_at(2);
   r.view.width = 240;
   r.view.height = 220;
   r.view.fov_deg = 40;
   r.settings.mode = core::Mode::kTextured;
-  r.settings.smooth_edges = false;
-  r.settings.lod_tolerance_px = 0;
-  r.sun = glm::normalize(glm::dvec3(1, 0.5, -0.6));
+  r.sun = glm::normalize(glm::dvec3(1, -0.6, 0.5));
   return r;
-}
-
-Instance ahead(const core::DrawRequest& r, double forward_m, double up_m) {
-  const mars::Axes& a = r.view.camera.axes;
-  Instance i;
-  i.position_m = r.view.camera.position_m + forward_m * a.forward + up_m * a.up;
-  i.rotation = glm::quat(glm::normalize(glm::quat_cast(glm::dmat3(a.right, a.forward, a.up))));
-  return i;
-}
-
-core::Frame empty_frame(const core::DrawRequest& r) {
-  core::Frame f;
-  f.width = r.view.width;
-  f.height = r.view.height;
-  f.colour.assign(static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height), {0, 0, 0});
-  f.range_m.assign(f.colour.size(), core::kSkyRange);
-  return f;
 }
 
 core::Frame image_of(const std::shared_ptr<const Model>& model, const core::DrawRequest& r,
                      const Instance& instance) {
-  core::Frame frame = empty_frame(r);
+  core::Frame frame = paper_frame(r);
   vpe::base::ThreadPool pool(2);
-  (void)compose(Scene({model}, {instance}), {r, kPlanetRadius_m, nullptr}, level_rule(r, false), pool, frame);
+  (void)compose(Scene({model}, {instance}), {r, kRadius_m, nullptr}, level_rule(r, false), pool, frame);
   return frame;
 }
 
@@ -67,10 +38,10 @@ std::shared_ptr<const Model> sticks_of(const Mesh& mesh, int voxels, bool is_tig
 
 // The same silhouette, ranges within a voxel, and nearly the same light.
 TEST(ComposerSticks, ShowWhatTheirTrianglesShow) {
-  const core::DrawRequest r = looking_north();
+  const core::DrawRequest r = looking_ahead();
   Mesh mesh = make_rock(3, 4);
   append(mesh, make_torus(0.4F, 0.12F, 60, 30), glm::mat4(1), {180, 60, 40, 255});
-  Instance instance = ahead(r, 2.2, -0.4);
+  Instance instance = instance_before(r, {0, -0.4, 2.2});
   instance.scale = 1.3F;
   const auto triangles = std::make_shared<const Model>("mesh", make_levels(mesh));
   const auto sticks = sticks_of(mesh, 512);
@@ -98,13 +69,13 @@ TEST(ComposerSticks, ShowWhatTheirTrianglesShow) {
 }
 
 TEST(ComposerSticks, CoarseLevelsKeepToTheTolerance) {
-  core::DrawRequest r = looking_north();
+  core::DrawRequest r = looking_ahead();
   const auto sticks = sticks_of(make_ellipsoid({0.5F, 0.5F, 0.5F}, 60), 256);
   r.settings.lod_tolerance_px = 2;
-  core::Frame frame = empty_frame(r);
+  core::Frame frame = paper_frame(r);
   vpe::base::ThreadPool pool(1);
-  const ComposedObjects drawn = compose(Scene({sticks}, {ahead(r, 8, 0)}), {r, kPlanetRadius_m, nullptr},
-                                        level_rule(r, false), pool, frame);
+  const ComposedObjects drawn = compose(Scene({sticks}, {instance_before(r, {0, 0, 8})}),
+                                        {r, kRadius_m, nullptr}, level_rule(r, false), pool, frame);
   EXPECT_EQ(drawn.objects, 1);
   EXPECT_GT(drawn.geometric_error_m, 0);
   EXPECT_LE(drawn.screen_space_error_px, 2);
@@ -112,7 +83,7 @@ TEST(ComposerSticks, CoarseLevelsKeepToTheTolerance) {
 
 // Light through n voxels of opacity a is (1 - a)^n of what is behind (Beer and Lambert).
 TEST(ComposerSticks, ASlabOfGlassDimsByBeersLaw) {
-  core::DrawRequest r = looking_north();
+  core::DrawRequest r = looking_ahead();
   r.settings.mode = core::Mode::kUnlit;
   VoxelGrid grid({.columns_x = 40, .columns_y = 7, .height = 40, .voxel_m = 0.05F, .corner_m = {-1, 0, -1}});
   for (int x = 0; x < 40; ++x) {
@@ -122,11 +93,11 @@ TEST(ComposerSticks, ASlabOfGlassDimsByBeersLaw) {
   }
   const auto slab =
       std::make_shared<const Model>("slab", std::make_shared<const StickModel>(build_sticks(std::move(grid))));
-  core::Frame frame = empty_frame(r);
+  core::Frame frame = paper_frame(r);
   std::fill(frame.colour.begin(), frame.colour.end(), vpe::base::Rgb{100, 100, 100});
   vpe::base::ThreadPool pool(1);
-  (void)compose(Scene({slab}, {ahead(r, 5, 0)}), {r, kPlanetRadius_m, nullptr}, level_rule(r, false), pool,
-                frame);
+  (void)compose(Scene({slab}, {instance_before(r, {0, 0, 5})}), {r, kRadius_m, nullptr}, level_rule(r, false),
+                pool, frame);
   const glm::dvec3 d = core::pixel_ray(r.view, 121.5, 108.5);
   const double length = 7 / glm::dot(d, r.view.camera.axes.forward);  // voxels
   const double through = std::pow(1 - 40.0 / 255, length);
@@ -134,12 +105,12 @@ TEST(ComposerSticks, ASlabOfGlassDimsByBeersLaw) {
 }
 
 TEST(ComposerSticks, CastShadowsAndAreMetBySingleRays) {
-  const core::DrawRequest r = looking_north();
+  const core::DrawRequest r = looking_ahead();
   const auto sticks = sticks_of(make_box({1, 1, 1}), 32, false);
-  Instance i = ahead(r, 5, 0);
+  Instance i = instance_before(r, {0, 0, 5});
   const Scene scene({sticks}, {i});
   const auto seen =
-      first_object(scene, {r.view.camera.position_m + 0.2 * r.view.camera.axes.up, {0, 0, 1}}, 100);
+      first_object(scene, {r.view.camera.position_m + 0.2 * r.view.camera.axes.up, {0, 1, 0}}, 100);
   ASSERT_TRUE(seen);
   EXPECT_NEAR(seen->range_m, 4.5, 0.05);
   const ObjectRays rays(scene, level_rule(r, true));
