@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kMostTime_s = 1e6;
 constexpr unsigned kWaitingPerTime = 5;  // for slow disks
-constexpr double kGiga = 1e9;
 
 // Returns NaN for anything but a number.
 double number_of(const char* text) {
@@ -94,9 +93,9 @@ int main(int count, char** words) {
     return 2;
   }
   options.up = *up;
-  const auto memory_bytes = static_cast<rlim_t>(options.memory_gb * kGiga);
   limit(RLIMIT_CORE, 0, 0);
 #ifndef VPE_READER_WITHOUT_MEMORY_LIMIT  // sanitizers reserve more than any limit
+  const auto memory_bytes = static_cast<rlim_t>(options.memory_gb * 1e9);
   limit(RLIMIT_AS, memory_bytes, memory_bytes);
 #endif
   const auto most_time_s = static_cast<unsigned>(options.time_s);
