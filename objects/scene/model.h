@@ -1,7 +1,7 @@
 // A model: levels of detail of a mesh with their trees, or sticks of voxels, and a ball around them.
 //
 // Typical usage:
-//   const Model model("rover", make_levels(mesh));         // by decimation (mesh_levels.h)
+//   const Model model("rover", make_levels_apart(std::move(mesh)));
 //   const Model::Level& level = model.levels()[model.level_within(0.01)];  // the coarsest within a centimetre
 #pragma once
 

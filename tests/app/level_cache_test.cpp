@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 #include "objects/scene/model.h"
 #include "tests/support/support.h"
@@ -49,11 +50,11 @@ class LevelCache : public ::testing::Test {
 };
 
 TEST_F(LevelCache, TheSecondTimeLevelsAreThoseOfTheFirst) {
-  const auto made = cached_levels(large(), folder());
+  const auto made = cached_levels(large(), folder()).levels;
   ASSERT_EQ(files().size(), 1U);
   expect_equal(made, objects::make_levels(large()));
   const auto stamp = std::filesystem::last_write_time(files().front());
-  expect_equal(cached_levels(large(), folder()), made);
+  expect_equal(cached_levels(large(), folder()).levels, made);
   EXPECT_EQ(std::filesystem::last_write_time(files().front()), stamp);
 }
 
@@ -63,33 +64,44 @@ TEST_F(LevelCache, TexturesAreThoseOfTheModel) {
   mesh.textures = {{1, 1, {{10, 20, 30, 255}}}};
   for (objects::Material& m : mesh.material_table) m.texture = 0;
   (void)cached_levels(mesh, folder());
-  const Model model("m", cached_levels(mesh, folder()));
+  const Model model("m", cached_levels(mesh, folder()).levels);
   ASSERT_GT(model.levels().size(), 1U);
   EXPECT_EQ(model.levels().back().mesh.material_table[0].texture, 0);
   EXPECT_EQ(model.textures().size(), 1U);
 }
 
 TEST_F(LevelCache, DamagedFilesAreMadeAgain) {
-  const auto made = cached_levels(large(), folder());
+  const auto made = cached_levels(large(), folder()).levels;
   const std::filesystem::path file = files().front();
   std::ifstream in(file, std::ios::binary);
   const std::string good{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   for (const std::size_t keep : {std::size_t{7}, good.size() - 1}) {
     std::ofstream(file, std::ios::binary) << good.substr(0, keep);
-    expect_equal(cached_levels(large(), folder()), made);
+    expect_equal(cached_levels(large(), folder()).levels, made);
   }
   std::string bad = good;
   bad[good.size() / 3] = static_cast<char>(bad[good.size() / 3] ^ 4);
   std::ofstream(file, std::ios::binary) << bad;
-  expect_equal(cached_levels(large(), folder()), made);
+  expect_equal(cached_levels(large(), folder()).levels, made);
 }
 
 TEST_F(LevelCache, SmallMeshesAndMissingFoldersAreNoTrouble) {
-  EXPECT_GE(cached_levels(objects::make_box({1, 1, 1}), folder()).size(), 1U);
+  EXPECT_GE(cached_levels(objects::make_box({1, 1, 1}), folder()).levels.size(), 1U);
   EXPECT_TRUE(files().empty());
-  EXPECT_GT(cached_levels(large(), {}).size(), 1U);
+  EXPECT_GT(cached_levels(large(), {}).levels.size(), 1U);
   std::ofstream(dir_ / "file") << "x";
-  EXPECT_GT(cached_levels(large(), dir_ / "file").size(), 1U);  // no folder can be made there
+  EXPECT_GT(cached_levels(large(), dir_ / "file").levels.size(), 1U);  // no folder can be made there
+}
+
+TEST_F(LevelCache, WithoutTheProgramThereIsTheFinestLevelAndANote) {
+  ASSERT_EQ(::setenv("VPE_MODEL_LEVELS", "/nonexistent", 1), 0);
+  const vpe::app::KeptLevels made = cached_levels(large(), folder());
+  ::unsetenv("VPE_MODEL_LEVELS");
+  EXPECT_TRUE(files().empty());
+  EXPECT_NE(made.note.find("vpe-model-levels is missing"), std::string::npos) << made.note;
+  ASSERT_EQ(made.levels.size(), 1U);
+  EXPECT_EQ(made.levels.front().mesh.triangles, large().triangles);
+  EXPECT_EQ(made.levels.front().tree.bytes(), objects::TriangleTree(large()).bytes());
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "objects/draw/composer.h"
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 
 namespace objects {

@@ -1,4 +1,4 @@
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "objects/model/decimation.h"
-#include "objects/model/manifold.h"
+#include "objects/levels/decimation.h"
+#include "objects/levels/manifold.h"
 #include "objects/model/shapes.h"
 #include "objects/model/weld.h"
 #include "tests/objects/surface_points.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 
 namespace objects {

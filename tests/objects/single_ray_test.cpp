@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 
 namespace objects {

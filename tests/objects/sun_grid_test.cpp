@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 
 namespace objects {

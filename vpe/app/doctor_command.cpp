@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "mars/sources/source.h"
+#include "objects/files/level_program.h"
 #include "objects/files/model_file.h"
 #include "vpe/app/cli/config_file.h"
 #include "vpe/app/cli/examples.h"
@@ -159,6 +160,9 @@ Finding find_models() {
     return {
         "models", State::kNote,
         "vpe-model-reader is not there; objects of scenes need it (build it where libassimp-dev is installed)"};
+  if (objects::model_levels_program().empty())
+    return {"models", State::kNote,
+            "vpe-model-levels is not there; objects have one level of detail without it"};
   return {"models", State::kGood, program};
 }
 

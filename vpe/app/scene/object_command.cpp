@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "objects/files/model_file.h"
-#include "objects/model/mesh_levels.h"
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/stick_file.h"
 #include "objects/sticks/voxelise.h"
@@ -17,6 +16,7 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/scene/commands.h"
+#include "vpe/app/scene/level_cache.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -82,12 +82,17 @@ void describe_sticks(const ObjectArguments& arguments, const Common& common) {
 }
 
 // Says what a model holds and how far it can be simplified.
-void describe(objects::ModelFile file, const Common& common) {
+void describe(const ObjectArguments& arguments, objects::ModelFile file, const Common& common) {
   const Extent extent = extent_of(file.mesh);
   const std::size_t vertices = file.mesh.positions_m.size();
   const std::size_t materials = file.mesh.material_table.size();
   const std::size_t textures = file.mesh.textures.size();
-  const std::vector<objects::MeshLevel> levels = objects::make_levels(std::move(file.mesh));
+  const KeptLevels made = cached_levels(std::move(file.mesh), {});
+  if (!made.note.empty()) {
+    if (!common.quiet) std::fprintf(stderr, "vpe: note: %s: %s\n", arguments.model.c_str(), made.note.c_str());
+    file.notes.push_back(made.note);
+  }
+  const std::vector<objects::MeshLevel>& levels = made.levels;
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const objects::MeshLevel& level : levels)
@@ -127,7 +132,7 @@ void run_object(const ObjectArguments& arguments, const Common& common) {
     for (const std::string& note : file.notes)
       std::fprintf(stderr, "vpe: note: %s: %s\n", arguments.model.c_str(), note.c_str());
   }
-  if (arguments.output.empty()) return describe(std::move(file), common);
+  if (arguments.output.empty()) return describe(arguments, std::move(file), common);
   std::vector<objects::TexturePyramid> textures;
   for (objects::Texture& t : file.mesh.textures) textures.emplace_back(std::move(t));
   file.mesh.textures.clear();

@@ -1,4 +1,4 @@
-#include "objects/model/manifold.h"
+#include "objects/levels/manifold.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,10 +1,10 @@
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-#include "objects/model/decimation.h"
+#include "objects/levels/decimation.h"
 #include "objects/model/hausdorff.h"
 #include "objects/model/normals.h"
 

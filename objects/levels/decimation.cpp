@@ -1,4 +1,4 @@
-#include "objects/model/decimation.h"
+#include "objects/levels/decimation.h"
 
 #include <algorithm>
 #include <tuple>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "objects/model/decimation_module.h"
-#include "objects/model/manifold.h"
+#include "objects/levels/decimation_module.h"
+#include "objects/levels/manifold.h"
 
 namespace objects {
 
