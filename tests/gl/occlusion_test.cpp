@@ -102,13 +102,21 @@ class Gate {
  public:
   void pass() {
     std::unique_lock lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
     changed_.wait(lock, [this] { return free_ > 0; });
+    --waiting_;
     --free_;
   }
   void let(int more) {
     const std::lock_guard lock(mutex_);
     free_ += more;
     changed_.notify_all();
+  }
+  // Waits until all that were let have passed and the next load waits, or, if there is none, for a while.
+  void wait_for_loads() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return free_ == 0 && waiting_ > 0; });
   }
 
   // A renderer that waits for its loads can end.
@@ -121,6 +129,7 @@ class Gate {
   std::mutex mutex_;
   std::condition_variable changed_;
   int free_ = 0;
+  int waiting_ = 0;
 };
 
 // Whatever is resident, and whatever replaces the rest. A tile that is missing and hidden needs no fallback with
@@ -143,11 +152,12 @@ TEST_F(Occluded, UnfinishedImagesAreTheSameOrFiner) {
     for (int step = 0; step < 12; ++step) {
       draw->draw(with(request, Occlusion::kOn));
       gate.let(random.integer(0, 12));
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      gate.wait_for_loads();
       // The first frame takes what has been loaded, the others draw the same.
       draw->draw(with(request, Occlusion::kOff));
       const DrawResult without = draw->draw(with(request, Occlusion::kOff));
       const DrawResult with_it = draw->draw(with(request, Occlusion::kOn));
+      if (without.settled && with_it.settled && without.missing.empty()) break;
       if (without.stats.pages_uploaded + with_it.stats.pages_uploaded > 0) continue;
       unfinished += without.missing.empty() ? 0 : 1;
       SCOPED_TRACE("view " + std::to_string(n) + " step " + std::to_string(step));

@@ -38,8 +38,10 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     setup.as_drawn = app::as_drawn;
     app::Common common;
     common.memory_mb = 256;
-    setup.make_painter = [common, file = painted_ ? painted_ : planet_, wrap = wrap_painter_] {
-      std::unique_ptr<Painter> painter = std::make_unique<app::WindowPainter>(file, common);
+    setup.make_painter = [common, file = painted_ ? painted_ : planet_, wrap = wrap_painter_,
+                          change_s = change_s_] {
+      std::unique_ptr<Painter> painter =
+          std::make_unique<app::WindowPainter>(file, common, app::StereoMethod{}, change_s);
       return wrap ? wrap(std::move(painter)) : std::move(painter);
     };
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
@@ -49,6 +51,7 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
 
   ExploreSetup extra_;                                                              // options of a test
   std::function<std::unique_ptr<Painter>(std::unique_ptr<Painter>)> wrap_painter_;  // may be empty
+  double change_s_ = app::WindowPainter::kChange_s;  // how long images wait for tiles of another appearance
   std::string opening_message_;  // of the window that was opened last; messages go away after a while
   std::shared_ptr<const paging::PlanetFile> planet_ = planet();
   std::shared_ptr<const paging::PlanetFile> painted_;  // the same planet with other storage, or null

@@ -74,7 +74,7 @@ TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   for (int n = 0; n < 100 && window_->session().pose().lon_deg == pose.lon_deg; ++n) window_->step(0.01);
   ASSERT_NE(window_->session().pose().lon_deg, pose.lon_deg);
   // The iteration that handled the event has requested the image; it is the next one shown.
-  for (int n = 0; n < 100 && window_->images() == before; ++n) window_->step(0.01);
+  for (int n = 0; n < 10'000 && window_->images() == before; ++n) window_->step(0.01);
   EXPECT_EQ(glm::length(window_->drawn()->request.draw.view.camera.position_m -
                         window_->session().view().camera.position_m),
             0.0);

@@ -43,9 +43,9 @@ class FilesTest : public ExploreWindowTest {
     settle();
     ASSERT_TRUE(window_->state().files);
   }
-  // Iterates until the message of the window holds a text, for at most some seconds.
+  // Iterates until the message of the window holds a text, for at most some minutes.
   void wait_for(const std::string& text) {
-    for (int n = 0; n < 3000 && window_->state().message.find(text) == std::string::npos; ++n) iterate(1);
+    for (int n = 0; n < 30'000 && window_->state().message.find(text) == std::string::npos; ++n) iterate(1);
     EXPECT_NE(window_->state().message.find(text), std::string::npos) << window_->state().message;
   }
   void control(const std::string& name) {

@@ -193,6 +193,7 @@ TEST_F(MovedImageTest, StandsStillUnderAFixedOverlay) {
 
 // A camera that turns on has its images drawn with a margin, so that their border is not seen.
 TEST_F(MovedImageTest, ImagesHaveAMarginWhileTheCameraTurns) {
+  view_ = {0, 0, 320, 180};  // images that take half a second have no margin
   open_with(explore::Warp::kGrid, core::Backend::kRay, std::chrono::milliseconds(60));
   EXPECT_EQ(window_->drawn()->request.margin_px, glm::ivec2(0));
   robot_->key_down("Left");

@@ -18,8 +18,12 @@ constexpr std::size_t kCarryingShare = 8;
 }  // namespace
 
 WindowPainter::WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common,
-                             StereoMethod stereo)
-    : planet_(planet), common_(std::move(common)), overlays_(std::move(planet)), stereo_(std::move(stereo)) {}
+                             StereoMethod stereo, double change_s)
+    : planet_(planet),
+      common_(std::move(common)),
+      change_s_(change_s),
+      overlays_(std::move(planet)),
+      stereo_(std::move(stereo)) {}
 
 CarriedDrawer* WindowPainter::drawer_for(const core::DrawRequest& request, Eye eye) {
   if (eye == Eye::kMiddle || !stereo_.carries() || backend_ != core::Backend::kRay ||
@@ -139,11 +143,11 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     backend_ = backend;
   }
   core::DrawRequest draw_request = std::move(as_asked.draw);
-  draw_request.paging.change_wait_s = kChange_s;
+  draw_request.paging.change_wait_s = change_s_;
   draw_request.time_s = request.flight_time_s;
   if (changes) {
     draw_request.paging.wait = true;
-    draw_request.paging.timeout_s = kChange_s;
+    draw_request.paging.timeout_s = change_s_;
   }
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;

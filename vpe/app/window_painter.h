@@ -24,13 +24,14 @@ window::ImageRequest as_drawn(window::ImageRequest request);
 
 // Draws the window's image requests. Holds one backend at a time to keep within --memory: after a change of the
 // backend, of exaggeration or of the kind of shading, no loaded tile fits, and the first image waits for its tiles for
-// kChange_s at most, so that the window shows the former image until then. One thread at a time.
+// `change_s` at most, so that the window shows the former image until then. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
-  // `stereo` says how second eyes are drawn by rays; triangles draw them in full.
-  WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common, StereoMethod stereo = {});
-  window::DrawnImage paint(const window::ImageRequest& request) override;
   static constexpr double kChange_s = 1.5;
+  // `stereo` says how second eyes are drawn by rays; triangles draw them in full.
+  WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common, StereoMethod stereo = {},
+                double change_s = kChange_s);
+  window::DrawnImage paint(const window::ImageRequest& request) override;
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s, Eye eye = Eye::kMiddle);
@@ -42,6 +43,7 @@ class WindowPainter : public window::Painter {
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   Common common_;
+  double change_s_;
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
