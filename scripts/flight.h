@@ -14,6 +14,9 @@
 //   at 12  interest lon=-67 lat=-13 radius=40000 levels=+1
 //   at 14  view fov=30 backend=ray eyes=sbs base=2 convergence=90 size=1920x1080
 //                                             version 1.1; each key may be left out
+//   at 15  object Curiosity lon=137.4 lat=-4.6 heading=90
+//                                             version 1.2; a name with blanks needs quotes
+//   at 16  object Curiosity show=off
 //   at 20  end                                the last command; without it, the flight ends at its last time
 //
 // `pose` needs lon, lat and one of alt (above the sphere) and height (above the terrain); angles left out are
@@ -26,6 +29,11 @@
 // `size` of an image. The field of view changes smoothly from one such line to
 // the next, beginning with that of the `view` line without a time, so a zoom lasts as long as the time between
 // them; two equal ones hold it (scripts/path.h). The other keys hold from their time on, as settings do.
+//
+// `object` places an object of the scene by its name: `lon` and `lat`, `height` above the ground (0) and `heading`
+// (along its way). Lines of one name are points of its way: it moves evenly from each to the next along the great circle,
+// and stands at the first one before its time and at the last one after it. `show=off` hides it from then on, `show=on`
+// shows it. There is at most one line of a name at a time.
 //
 // Typical usage:
 //   const ParsedFlight parsed = parse_flight(text, "tour.flight");
@@ -43,6 +51,7 @@
 #include "scripts/frame_rate.h"
 #include "vpe/core/drawn_by.h"
 #include "vpe/core/interest.h"
+#include "vpe/core/object_track.h"
 #include "vpe/core/stereo.h"
 
 namespace scripts {
@@ -57,10 +66,11 @@ struct FlightLimits {
   static constexpr double kMaxConvergence_m = 1e12;
 };
 
-// The versions of the format. Both are read. A flight is written in the oldest one that can hold it.
+// The versions of the format. All are read. A flight is written in the oldest one that can hold it.
 enum class FlightVersion : std::uint8_t {
   k1,
   k1_1,  // also `view` at a time
+  k1_2,  // also `object`
 };
 
 // Holds the `view` line: how the flight is filmed.
@@ -148,6 +158,16 @@ struct ViewCommand {
   bool operator==(const ViewCommand&) const = default;
 };
 
+// Holds an `object` line: its place, whether it is shown, or both.
+struct ObjectCommand {
+  double time_s = 0;
+  std::string name;
+  std::optional<vpe::core::ObjectPlace> place;
+  std::optional<bool> is_shown;
+
+  bool operator==(const ObjectCommand&) const = default;
+};
+
 // Holds a whole flight. Each list is in ascending order of time; parse_flight() ensures it.
 struct Flight {
   FlightView view;
@@ -156,12 +176,13 @@ struct Flight {
   std::vector<SetCommand> sets;
   std::vector<InterestCommand> interests;
   std::vector<ViewCommand> views;
+  std::vector<ObjectCommand> objects;
   std::optional<double> end_s;
 
   bool operator==(const Flight&) const = default;
 };
 
-// Returns the oldest version that holds a flight: k1 if no view has a time.
+// Returns the oldest version that holds a flight: k1 if no view has a time and no object moves.
 FlightVersion version_of(const Flight& flight);
 
 // Returns the time of the end, or the last time in the flight.
@@ -198,6 +219,7 @@ std::string to_line(const HeadCommand& head);
 std::string to_line(const SetCommand& set);
 std::string to_line(const InterestCommand& interest);
 std::string to_line(const ViewCommand& command);
+std::string to_line(const ObjectCommand& command);
 std::string end_line(double time_s);
 std::string version_line(FlightVersion version);
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <span>
 
 #include "scripts/flight.h"
@@ -42,7 +43,7 @@ class Parser {
     }
     line_ = std::max(line_, 1);
     if (!version_seen_) {
-      fail("the first command \"flight 1\" or \"flight 1.1\", found an empty file");
+      fail("the first command \"flight 1\", \"flight 1.1\" or \"flight 1.2\", found an empty file");
     } else if (flight_.waypoints.empty() && errors_.empty()) {
       fail("at least one pose (at T pose lon=.. lat=.. alt=..), found none in the file");
     }
@@ -59,15 +60,18 @@ class Parser {
 
   bool version(const Words& words) {
     const bool named = words.size() == 2 && words[0] == "flight";
-    version_seen_ = named && (words[1] == "1" || words[1] == "1.1");
+    constexpr std::array<std::string_view, 3> kVersions{"1", "1.1", "1.2"};
+    const auto found = named ? std::find(kVersions.begin(), kVersions.end(), words[1]) : kVersions.end();
+    version_seen_ = found != kVersions.end();
     if (version_seen_) {
-      version_ = words[1] == "1" ? FlightVersion::k1 : FlightVersion::k1_1;
+      version_ = static_cast<FlightVersion>(found - kVersions.begin());
       return true;
     }
     const bool other = named && parse_number(words[1]).has_value();
-    fail(other ? "\"flight 1\" or \"flight 1.1\" (this program reads versions 1 and 1.1), found version " +
+    fail(other ? "\"flight 1\", \"flight 1.1\" or \"flight 1.2\" (this program reads versions 1 to 1.2), found "
+                 "version " +
                      words[1]
-               : "the first command \"flight 1\" or \"flight 1.1\", found " + quote(words[0]));
+               : "the first command \"flight 1\", \"flight 1.1\" or \"flight 1.2\", found " + quote(words[0]));
     return false;
   }
 
@@ -158,12 +162,14 @@ class Parser {
     if (name == "interest") return interest(arguments);
     if (name == "end") return end(arguments);
     if (name == "view") return timed_view(arguments);
+    if (name == "object") return object(arguments);
     fail(std::string(commands()) + " after the time, found " + quote(name));
   }
 
   std::string_view commands() const {
-    return version_ == FlightVersion::k1 ? "pose, look, set, interest or end"
-                                         : "pose, look, set, interest, view or end";
+    if (version_ == FlightVersion::k1) return "pose, look, set, interest or end";
+    return version_ == FlightVersion::k1_1 ? "pose, look, set, interest, view or end"
+                                           : "pose, look, set, interest, view, object or end";
   }
 
   void pose(const Words& words) {
@@ -261,6 +267,38 @@ class Parser {
     flight_.views.push_back({time_s_, view});
   }
 
+  void object(const Words& words) {
+    if (version_ < FlightVersion::k1_2)
+      return fail("\"flight 1.2\" as the first command of a flight with \"at TIME object\"");
+    using Limits = vpe::core::ObjectTrackLimits;
+    if (words.empty() || words[0].empty() || words[0].size() > Limits::kMostNameBytes)
+      return fail("the name of an object, 1 to " + std::to_string(Limits::kMostNameBytes) +
+                  " bytes, after \"object\"");
+    std::array fields{Field{"lon", -360, 360}, Field{"lat", -90, 90},
+                      Field{"height", -Limits::kMostHeight_m, Limits::kMostHeight_m},
+                      Field{"heading", -360, 360}};
+    std::array texts{TextField{"show"}};
+    const std::size_t errors_before = errors_.size();
+    (void)read_fields(take_texts(words, 1, texts), fields, texts);
+    const auto& [lon, lat, height, heading] = fields;
+    const std::optional<std::string_view> show = texts[0].value;
+    if (show && *show != "on" && *show != "off") fail("show=on or show=off, found " + quote(*show));
+    if (errors_.size() != errors_before || full()) return;
+    const bool has_place = lon.given || lat.given || height.given || heading.given;
+    if (has_place && !(lon.given && lat.given)) return fail("lon=.. and lat=.. of an object");
+    if (!has_place && !show) return fail("lon=.. and lat=.., or show=on or show=off of an object");
+    if (flight_.objects.empty() || flight_.objects.back().time_s != time_s_) objects_now_.clear();
+    if (!objects_now_.insert(words[0]).second)
+      return fail("one line of " + quote(words[0]) + " at " + format_number(time_s_) +
+                  " s, found a second one");
+    ObjectCommand command{time_s_, words[0], std::nullopt, std::nullopt};
+    if (has_place)
+      command.place = {lon.value, lat.value, height.value,
+                       heading.given ? std::optional(heading.value) : std::nullopt};
+    if (show) command.is_shown = *show == "on";
+    flight_.objects.push_back(std::move(command));
+  }
+
   std::optional<DrawnBy> read_backend(std::string_view text) {
     const std::optional<vpe::core::Backend> backend = vpe::core::parse_backend(text);
     if (backend || text == to_string(DrawnBy::kAuto)) return vpe::core::drawn_by(backend);
@@ -319,6 +357,7 @@ class Parser {
   bool view_seen_ = false;
   bool time_seen_ = false;
   bool ended_ = false;
+  std::set<std::string> objects_now_;  // with a line at the time of the last one
   Flight flight_;
   std::vector<FlightError> errors_;
 };
@@ -340,6 +379,7 @@ double duration_s(const Flight& flight) {
   include(flight.sets);
   include(flight.interests);
   include(flight.views);
+  include(flight.objects);
   return last_s;
 }
 

@@ -33,12 +33,14 @@ Words split_words(std::string_view line, std::string& fault) {
     line.remove_prefix(begin);
     std::string& word = words.emplace_back();
     std::size_t at = 0;
+    // `at T object NAME`: the name may be quoted.
+    const bool is_quoted_name = words.size() == 4 && words[2] == "object" && line.starts_with('"');
     while (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
       // Only the first equals sign can be before a quoted value.
       const bool opens =
           line[at] == '=' && word.find('=') == std::string::npos && line.substr(at + 1).starts_with('"');
-      word += line[at++];
-      if (!opens) continue;
+      if (!is_quoted_name) word += line[at++];
+      if (!opens && !is_quoted_name) continue;
       for (++at; at < line.size() && line[at] != '"'; ++at) {
         if (line[at] == '\\' && at + 1 < line.size()) ++at;
         word += line[at];

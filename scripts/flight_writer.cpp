@@ -35,11 +35,13 @@ std::string size_text(int width, int height) { return std::to_string(width) + "x
 }  // namespace
 
 FlightVersion version_of(const Flight& flight) {
+  if (!flight.objects.empty()) return FlightVersion::k1_2;
   return flight.views.empty() ? FlightVersion::k1 : FlightVersion::k1_1;
 }
 
 std::string version_line(FlightVersion version) {
-  return version == FlightVersion::k1 ? "flight 1\n" : "flight 1.1\n";
+  if (version == FlightVersion::k1) return "flight 1\n";
+  return version == FlightVersion::k1_1 ? "flight 1.1\n" : "flight 1.2\n";
 }
 
 std::string to_line(const FlightView& view) {
@@ -87,6 +89,17 @@ std::string to_line(const ViewCommand& command) {
   return line + "\n";
 }
 
+std::string to_line(const ObjectCommand& command) {
+  std::string line = "at " + format_number(command.time_s) + " object " + value_text(command.name);
+  if (command.place) {
+    line += " lon=" + format_number(command.place->lon_deg) + " lat=" + format_number(command.place->lat_deg) +
+            " height=" + format_number(command.place->height_m);
+    if (command.place->heading_deg) line += " heading=" + format_number(*command.place->heading_deg);
+  }
+  if (command.is_shown) line += *command.is_shown ? " show=on" : " show=off";
+  return line + "\n";
+}
+
 std::string end_line(double time_s) { return at_line(time_s, "end", {}); }
 
 std::string to_text(const Flight& flight) {
@@ -99,6 +112,7 @@ std::string to_text(const Flight& flight) {
   add(flight.sets);
   add(flight.interests);
   add(flight.views);
+  add(flight.objects);
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 
   std::string text = version_line(version_of(flight)) + to_line(flight.view);

@@ -87,6 +87,7 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
     head_.time_s = *last_frame_s_;
     lines += to_line(head_);
   }
+  lines += object_lines(time_s);
   lines += view_lines(time_s, view);
   lines += to_line(Waypoint{.time_s = time_s,
                             .lon_deg = pose.lon_deg,
@@ -113,6 +114,19 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
   last_frame_s_ = time_s;
 }
 
+void FlightLog::objects(std::span<const ObjectCommand> commands) {
+  if (!commands.empty() && version_ < FlightVersion::k1_2)
+    throw std::logic_error("a log of this version has no objects");
+  objects_.assign(commands.begin(), commands.end());
+}
+
+std::string FlightLog::object_lines(double time_s) {
+  std::string lines;
+  for (; objects_written_ < objects_.size() && objects_[objects_written_].time_s <= time_s; ++objects_written_)
+    lines += to_line(objects_[objects_written_]);
+  return lines;
+}
+
 void FlightLog::note(std::string_view text) {
   std::string line = "# " + std::string(text);
   std::replace_if(
@@ -121,7 +135,7 @@ void FlightLog::note(std::string_view text) {
 }
 
 void FlightLog::end(double time_s) {
-  file_.write(end_line(time_s));
+  file_.write(object_lines(time_s) + end_line(time_s));
   file_.close();
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mars/geodesy/pose.h"
 #include "scripts/flight.h"
@@ -62,6 +63,11 @@ class FlightLog {
              const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {},
              const ViewState& view = {});
 
+  // Takes the lines of objects of the flight that is logged, in ascending order of time: each is written before the first
+  // frame at or after its time, and the rest at the end. Throws std::logic_error for lines in a log of a version before
+  // 1.2.
+  void objects(std::span<const ObjectCommand> commands);
+
   // Writes a comment line, for people and for programs that can read it. Replay ignores it. Line ends become
   // blanks.
   void note(std::string_view text);
@@ -71,6 +77,7 @@ class FlightLog {
 
  private:
   std::string view_lines(double time_s, const ViewState& view);
+  std::string object_lines(double time_s);
 
   LineFile file_;
   FlightVersion version_;
@@ -79,6 +86,8 @@ class FlightLog {
   vpe::core::Settings settings_;                // last ones written
   ViewCommand view_{.time_s = -1, .view = {}};  // all that was written so far, and when last
   std::size_t regions_ = 0;                     // written so far
+  std::vector<ObjectCommand> objects_;
+  std::size_t objects_written_ = 0;
 };
 
 }  // namespace scripts

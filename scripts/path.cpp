@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "scripts/object_tracks.h"
 #include "vpe/base/mutation.h"
 #include "vpe/base/number.h"
 
@@ -171,6 +172,7 @@ Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_h
       heads_(held_at_ends(flight.heads.empty() ? std::vector<HeadCommand>{HeadCommand{}} : flight.heads,
                           duration_s_)),
       interests_(flight.interests),
+      tracks_(object_tracks(flight.objects)),
       views_(accumulated(flight.views)),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),

@@ -10,6 +10,7 @@
 //     zoom enlarges the image by the same factor each second. The `view` line without a time is the first of
 //     them, at 0 s. Two equal ones hold it. Flights without such lines do not change it.
 //   - Other keys of `view` lines hold from their time on.
+//   - Objects move at constant speed along the great circle between two of their lines (vpe/core/object_track.h).
 //   - Before the first pose (or `look` line), and between the last one and the end, the state is held, as if a
 //     line with the same values stood at the start (or the end).
 //   - At the time of a pose, `look` or `view` line the state is that of the line, to the bit: a log replays exactly.
@@ -24,6 +25,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -57,7 +59,7 @@ class Path {
   // terrain is exaggerated as exaggeration() returns for the pose's time: by what the flight has set up to
   // then, and by `exaggeration` before the flight sets it for the first time. Throws std::runtime_error,
   // naming the time, when a terrain height is unknown, when a camera is not above the planet's centre, and
-  // when two successive poses are opposite, so that no great circle is defined.
+  // when two successive poses, or places of an object, are opposite, so that no great circle is defined.
   Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration = 1);
 
   double duration_s() const { return duration_s_; }
@@ -71,6 +73,9 @@ class Path {
   // Applies all `set` commands up to and including a time, in order. Throws std::runtime_error for a value
   // that the settings refuse.
   void apply_settings(double time_s, vpe::core::Settings& settings) const;
+
+  // Returns how the flight moves objects of the scene, by ascending names; null if it moves none.
+  const std::shared_ptr<const std::vector<vpe::core::ObjectTrack>>& tracks() const { return tracks_; }
 
   // Returns the regions of interest given up to and including a time.
   std::span<const InterestCommand> interests(double time_s) const;
@@ -95,6 +100,7 @@ class Path {
   std::vector<Knot> knots_;         // the poses with resolved heights, and those held at both ends
   std::vector<HeadCommand> heads_;  // likewise
   std::vector<InterestCommand> interests_;
+  std::shared_ptr<const std::vector<vpe::core::ObjectTrack>> tracks_;
   std::vector<ViewCommand> views_;  // each with what those before it say
   std::vector<Fov> fovs_;           // held at both ends; empty if no view has one
   SphericalSpline<glm::dvec3> place_;

@@ -19,7 +19,7 @@
 //   diameter_m = [0.5, 4]
 //   [[path]]                                   # model; name, scale = 1
 //   model = "rover"                            # wheelbase_m and track_m, or neither
-//   points = [[0, 137.4, -4.6], [60, 137.5, -4.6, 90]]  # seconds, lon, lat, heading
+//   points = [[0, 137.4, -4.6], [60, 137.5, -4.6, 90]]  # seconds, lon, lat, heading, height above the ground
 //
 // GeoJSON (`*.geojson`, `*.json`) is a FeatureCollection of Points. The properties model (a path), name, height,
 // altitude, heading, pitch, roll, scale and align are read; others are not, nor is a third coordinate.
@@ -111,6 +111,7 @@ struct PathPoint {
   double time_s = 0;
   mars::LonLat place;
   std::optional<double> heading_deg = std::nullopt;  // from here to the next point; nullopt: along the way
+  double height_m = 0;                               // above the ground; even between two points
 };
 
 struct PathEntry {

@@ -159,11 +159,12 @@ class SceneTomlReader {
       path.wheelbase_m = table.number("wheelbase_m", kWheelRange_m);
       path.track_m = table.number("track_m", kWheelRange_m);
     }
-    constexpr std::string_view kForm = "[seconds, lon, lat] or [seconds, lon, lat, heading]";
+    constexpr std::string_view kForm = "[seconds, lon, lat], then heading and height if wanted";
     for (const toml::node& node : table.list("points", kForm)) {
-      const toml::array& parts = parts_of(table, node, "points", 3, 4, kForm);
+      const toml::array& parts = parts_of(table, node, "points", 3, 5, kForm);
       PathPoint point{table.number_of(parts[0], "time", kTimeRange_s), place_of(table, parts, 1)};
-      if (parts.size() == 4) point.heading_deg = table.number_of(parts[3], "heading", kAngleRange_deg);
+      if (parts.size() > 3) point.heading_deg = table.number_of(parts[3], "heading", kAngleRange_deg);
+      if (parts.size() > 4) point.height_m = table.number_of(parts[4], "height", kHeightRange_m);
       if (!path.points.empty() && point.time_s <= path.points.back().time_s)
         table.fail_expecting(parts[0], "time", "a later one than that of the point before");
       path.points.push_back(point);

@@ -54,8 +54,14 @@ mars::LocalFrame headed_frame(mars::LonLat place, double heading_deg) {
   return {axes.right, axes.forward, axes.up};
 }
 
-// Returns the level frame of a path at a time; its north is the heading.
-mars::LocalFrame path_frame(const std::vector<PathPoint>& points, double time_s) {
+// Where a path is at a time.
+struct PathState {
+  mars::LonLat place;
+  mars::LocalFrame frame;  // level; its north is the heading
+  double height_m = 0;     // above the ground
+};
+
+PathState path_state(const std::vector<PathPoint>& points, double time_s) {
   const auto after = std::upper_bound(points.begin(), points.end(), time_s,
                                       [](double t, const PathPoint& point) { return t < point.time_s; });
   const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - points.begin() - 1, 0));
@@ -63,19 +69,23 @@ mars::LocalFrame path_frame(const std::vector<PathPoint>& points, double time_s)
   const glm::dvec3 start = mars::direction(from.place);
   const bool is_moving = at + 1 < points.size() && time_s > from.time_s;
   glm::dvec3 direction = start;
-  mars::LonLat place = from.place;
+  PathState state{from.place, {}, from.height_m};
   if (is_moving) {
     const PathPoint& to = points[at + 1];
     const double t = (time_s - from.time_s) / (to.time_s - from.time_s);
     direction = glm::normalize(mars::slerp(start, mars::direction(to.place), t));
-    place = mars::lon_lat(direction);
+    state.place = mars::lon_lat(direction);
+    state.height_m = std::lerp(from.height_m, to.height_m, t);
   }
-  if (from.heading_deg) return headed_frame(place, *from.heading_deg);
-  const std::size_t leg = leading_leg(points, at);
-  if (leg + 1 >= points.size()) return headed_frame(place, 0);
-  const glm::dvec3 a = mars::direction(points[leg].place);
-  const glm::dvec3 b = mars::direction(points[leg + 1].place);
-  return level_frame(direction, travel_direction(a, b, direction));
+  const std::size_t leg = from.heading_deg ? points.size() : leading_leg(points, at);
+  if (leg + 1 >= points.size()) {
+    state.frame = headed_frame(state.place, from.heading_deg.value_or(0));
+  } else {
+    const glm::dvec3 a = mars::direction(points[leg].place);
+    const glm::dvec3 b = mars::direction(points[leg + 1].place);
+    state.frame = level_frame(direction, travel_direction(a, b, direction));
+  }
+  return state;
 }
 
 }  // namespace
@@ -106,15 +116,29 @@ Instance place_instance(const Placing& placing, double foot_radius_m, double pla
   return instance;
 }
 
+Placing placing_at(const Placing& placing, const std::vector<PathPoint>& points, double time_s) {
+  const PathState state = path_state(points, time_s);
+  const mars::LocalFrame north = mars::local_frame(state.place);
+  const glm::dvec3& ahead = state.frame.north;
+  Placing moved = placing;
+  moved.place = state.place;
+  moved.height_kind = HeightKind::kAboveGround;
+  moved.height_m = state.height_m;
+  moved.heading_deg =
+      std::atan2(glm::dot(ahead, north.east), glm::dot(ahead, north.north)) / mars::kRadiansPerDegree;
+  return moved;
+}
+
 Instance path_instance(const PathEntry& path, double time_s, const GroundRadius& ground_radius_m) {
-  const mars::LocalFrame level = path_frame(path.points, time_s);
+  const PathState state = path_state(path.points, time_s);
+  const mars::LocalFrame& level = state.frame;
   Instance instance;
   instance.model = static_cast<std::uint32_t>(path.model);
   instance.scale = stored_scale(path.scale);
   const bool has_wheels = path.wheelbase_m > 0 && path.track_m > 0;
   const ContactPlane stand = has_wheels ? wheel_plane(level, path.wheelbase_m, path.track_m, ground_radius_m)
                                         : ContactPlane{level, level.up * ground_radius_m(level.up)};
-  instance.position_m = stand.origin_m;
+  instance.position_m = stand.origin_m + level.up * state.height_m;
   instance.rotation = rotation_of(mars::oriented_axes(stand.frame, 0, 0, 0));
   return instance;
 }

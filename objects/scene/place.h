@@ -11,6 +11,7 @@
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "mars/geodesy/pose.h"
 #include "objects/files/scene_file.h"
@@ -40,13 +41,17 @@ constexpr double wheel_error_m(double wheelbase_m, double track_m) {
   return 1e-8 + 4e-7 * (wheelbase_m + track_m);
 }
 
+// Returns a placing moved to where a path is at a time: its place, heading and height above the ground. There must be a
+// point.
+Placing placing_at(const Placing& placing, const std::vector<PathPoint>& points, double time_s);
+
 // Returns the instance of a path at a time. It moves at constant speed along the great circle from point to
 // point, and stands at the first one before its time and at the last one after it. The heading is that of the
-// point it left, or along the way; where it waits, as it came.
+// point it left, or along the way; where it waits, as it came. Heights change evenly.
 //
 // The origin of the model is amid its four wheels, on their plane. That is the plane that fits best to the
 // ground under them, lifted until no wheel is below the ground. Without wheels the model is upright, its origin
-// on the ground.
+// on the ground. The height of the path lifts it along the vertical.
 Instance path_instance(const PathEntry& path, double time_s, const GroundRadius& ground_radius_m);
 
 }  // namespace objects

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -27,6 +28,29 @@ struct Inputs {
   Settings settings;
   std::string fingerprint() const { return fingerprint_of(basis, request, settings); }
 };
+
+TEST(FilmFrame, WhatMovesObjectsIsInItsFingerprint) {
+  using vpe::core::ObjectTrack;
+  Inputs i;
+  const auto of = [&](std::vector<ObjectTrack> tracks, double time_s) {
+    i.request.tracks = std::make_shared<const std::vector<ObjectTrack>>(std::move(tracks));
+    i.request.time_s = time_s;
+    return i.fingerprint();
+  };
+  const std::string without = of({{"a", {}, {{1, false}}}}, 2);
+  i.request.tracks = nullptr;
+  EXPECT_EQ(i.fingerprint(), without);  // without a scene nothing moves
+  ASSERT_EQ(i.settings.set("scene", VPE_SOURCE_DIR "/scripts/scenes/gale.scene.toml"), "");
+  std::set<std::string> seen{i.fingerprint()};
+  const std::vector<std::vector<ObjectTrack>> kinds{
+      {{"a", {}, {{1, false}}}},         {{"b", {}, {{1, false}}}},
+      {{"a", {}, {{1.5, false}}}},       {{"a", {}, {{1, true}}}},
+      {{"a", {{1, {2, 3, 4, {}}}}, {}}}, {{"a", {{1, {2, 3, 4, 0}}}, {}}},
+      {{"a", {{1, {2, 3, 5, {}}}}, {}}}, {{"a", {{1, {2, 3, 4, {}}}}, {}}, {"b", {}, {{1, false}}}},
+  };
+  for (const auto& tracks : kinds) EXPECT_TRUE(seen.insert(of(tracks, 2)).second);
+  EXPECT_TRUE(seen.insert(of(kinds[0], 3)).second);
+}
 
 TEST(FilmFrame, TheEyesAreInItsFingerprint) {
   using vpe::core::StereoLayout;

@@ -55,8 +55,10 @@ void run_flight(std::span<const std::uint8_t> bytes) {
   const scripts::ParsedFlight again = scripts::parse_flight(scripts::to_text(*parsed.flight), "again.flight");
   require(again.flight.has_value() && *again.flight == *parsed.flight, "a flight survives being written");
   require(scripts::duration_s(*parsed.flight) >= 0, "no negative duration");
-  require(parsed.flight->views.empty() || scripts::version_of(*parsed.flight) == scripts::FlightVersion::k1_1,
+  require(parsed.flight->views.empty() || scripts::version_of(*parsed.flight) >= scripts::FlightVersion::k1_1,
           "views need version 1.1");
+  require(parsed.flight->objects.empty() || scripts::version_of(*parsed.flight) == scripts::FlightVersion::k1_2,
+          "objects need version 1.2");
 }
 
 std::vector<Bytes> flight_seeds() {
@@ -67,6 +69,8 @@ std::vector<Bytes> flight_seeds() {
       bytes_of(
           "flight 1.1\nview fov=60\nat 0 pose lon=1 lat=2 alt=3e5\nat 0 view fov=30 backend=ray eyes=sbs "
           "base=2.5 size=640x360\nat 2 view eyes=off backend=auto\nat 3 view fov=40 eyes=anaglyph base=0\n"),
+      bytes_of("flight 1.2\nat 0 pose lon=1 lat=2 alt=3e5\nat 0 object \"a b\" lon=1 lat=2 height=3 heading=4\n"
+               "at 2 object c show=off\nat 3 object \"a b\" lon=1.5 lat=2 show=on\nat 4 view fov=30\n"),
       bytes_of("# nothing\nflight 1\n")};
   const fs::path folder = fs::path(VPE_SOURCE_DIR) / "scripts" / "flights";
   for (const auto& entry : fs::directory_iterator(folder)) all.push_back(read(entry.path()));

@@ -101,11 +101,11 @@ TEST(Flight, EndsWithTheLastTimeGiven) {
 }
 
 TEST(Flight, FirstLineIsTheVersion) {
-  expect_error("", 1, "\"flight 1\" or \"flight 1.1\", found an empty file");
+  expect_error("", 1, "\"flight 1.1\" or \"flight 1.2\", found an empty file");
   expect_error("\n# nothing\n", 2, "found an empty file");
   expect_error("at 0 end\n", 1, "\"flight 1\"");
-  expect_error("\nflight 2\n", 2, "reads versions 1 and 1.1), found version 2");
-  expect_error("flight 1.2\n", 1, "found version 1.2");
+  expect_error("\nflight 2\n", 2, "reads versions 1 to 1.2), found version 2");
+  expect_error("flight 1.3\n", 1, "found version 1.3");
   expect_error("flight 1.10\n", 1, "found version 1.10");
   expect_error("flight 1 2\n", 1, "\"flight 1\"");
   expect_error("flight one\n", 1, "\"flight 1\"");
@@ -242,7 +242,7 @@ TEST(Flight, ReadsViewsWithATime) {
 TEST(Flight, IsWrittenInTheOldestVersionThatHoldsIt) {
   const std::string old =
       "flight 1\nview fov=60 size=1280x720 fps=30\nat 0 pose lon=0 lat=0 alt=1 yaw=0 pitch=0 roll=0\n";
-  for (const char* version : {"flight 1\n", "flight 1.1\n"}) {
+  for (const char* version : {"flight 1\n", "flight 1.1\n", "flight 1.2\n"}) {
     const ParsedFlight parsed = parse_flight(version + old.substr(9), "F");
     ASSERT_TRUE(parsed.flight.has_value());
     EXPECT_EQ(to_text(*parsed.flight), old);
@@ -269,6 +269,49 @@ TEST(Flight, BadViewsWithATimeAreRefused) {
   expect_error(in_1_1("at 1 view fov=30\nat 1 view eyes=off\n"), 4, "one view at 1 s");
   expect_error(in_1_1("at 1 end\nat 2 view fov=30\n"), 4, "nothing after \"end\"");
   expect_error(in_1_1("view fov=30\n"), 3, "before the first \"at\"");
+}
+
+// Returns a flight of version 1.2 with one pose on line 2, then these lines.
+std::string in_1_2(const std::string& lines) {
+  return std::string("flight 1.2\nat 0 pose lon=0 lat=0 alt=1\n").append(lines);
+}
+
+TEST(Flight, ReadsObjects) {
+  const ParsedFlight parsed =
+      parse_flight(in_1_2("at 1 object Curiosity lon=137.4 lat=-4.6 heading=90\n"
+                          "at 1 object \"a \\\"b\\\" #\" show=off\n"
+                          "at 2 view fov=30\n"
+                          "at 3 object Curiosity show=on height=2.5 lat=-4.5 lon=137.5\n"),
+                   "F");
+  ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  const std::vector<ObjectCommand> wanted{{1, "Curiosity", vpe::core::ObjectPlace{137.4, -4.6, 0, 90}, {}},
+                                          {1, "a \"b\" #", {}, false},
+                                          {3, "Curiosity", vpe::core::ObjectPlace{137.5, -4.5, 2.5, {}}, true}};
+  EXPECT_EQ(parsed.flight->objects, wanted);
+  EXPECT_EQ(duration_s(*parsed.flight), 3);
+  EXPECT_EQ(version_of(*parsed.flight), FlightVersion::k1_2);
+  EXPECT_EQ(to_text(*parsed.flight).substr(0, 11), "flight 1.2\n");
+  EXPECT_EQ(to_line(wanted[0]), "at 1 object Curiosity lon=137.4 lat=-4.6 height=0 heading=90\n");
+  EXPECT_EQ(to_line(wanted[1]), "at 1 object \"a \\\"b\\\" #\" show=off\n");
+  EXPECT_EQ(to_line(wanted[2]), "at 3 object Curiosity lon=137.5 lat=-4.5 height=2.5 show=on\n");
+}
+
+TEST(Flight, BadObjectsAreRefused) {
+  expect_error(in_1_1("at 1 object a show=off\n"), 3, "\"flight 1.2\" as the first command");
+  expect_error(in_1_2("at 1 jump\n"), 3, "pose, look, set, interest, view, object or end after the time");
+  expect_error(in_1_2("at 1 object\n"), 3, "the name of an object, 1 to 200 bytes");
+  expect_error(in_1_2("at 1 object \"\" show=on\n"), 3, "the name of an object");
+  expect_error(in_1_2("at 1 object " + std::string(201, 'a') + " show=on\n"), 3, "the name of an object");
+  expect_error(in_1_2("at 1 object a\n"), 3, "lon=.. and lat=.., or show=on or show=off");
+  expect_error(in_1_2("at 1 object a lon=1\n"), 3, "lon=.. and lat=.. of an object");
+  expect_error(in_1_2("at 1 object a heading=1 show=on\n"), 3, "lon=.. and lat=.. of an object");
+  expect_error(in_1_2("at 1 object a lon=1 lat=91\n"), 3, "lat=NUMBER from -90 to 90");
+  expect_error(in_1_2("at 1 object a lon=1 lat=1 height=1e9\n"), 3, "height=NUMBER");
+  expect_error(in_1_2("at 1 object a lon=1 lat=1 yaw=1\n"), 3, "keys lon, lat, height, heading, show");
+  expect_error(in_1_2("at 1 object a show=yes\n"), 3, "show=on or show=off, found \"yes\"");
+  expect_error(in_1_2("at 1 object a show=on show=off\n"), 3, "show once");
+  expect_error(in_1_2("at 1 object a show=on\nat 1 object b show=on\nat 1 object a lon=1 lat=1\n"), 5,
+               "one line of \"a\" at 1 s");
 }
 
 TEST(Flight, QuotesHoldValuesWithBlanks) {
@@ -365,6 +408,18 @@ ViewState random_view(Random& random) {
   return view;
 }
 
+ObjectCommand random_object(Random& random, double time_s) {
+  const char* names[] = {"rover", "a b", "#1", "say \"x\"", "back\\slash", "tab\there", "lon=1"};
+  ObjectCommand command{time_s, names[random.integer(0, 6)], {}, {}};
+  if (random.integer(0, 2) > 0) {
+    command.place = vpe::core::ObjectPlace{
+        random.uniform(-360, 360), random.uniform(-90, 90), random.uniform(-10, 1e4), {}};
+    if (random.integer(0, 1) == 0) command.place->heading_deg = random.uniform(-360, 360);
+  }
+  if (!command.place || random.integer(0, 2) == 0) command.is_shown = random.integer(0, 1) == 1;
+  return command;
+}
+
 Flight random_flight(Random& random) {
   Flight flight;
   flight.view.fov_deg = random.uniform(1, 170);
@@ -392,6 +447,7 @@ Flight random_flight(Random& random) {
                                    random.integer(-30, 30)}});
     }
     if (random.integer(0, 3) == 0) flight.views.push_back({t, random_view(random)});
+    if (random.integer(0, 3) == 0) flight.objects.push_back(random_object(random, t));
     t += random.log_uniform(1e-9, 100);
   }
   if (random.integer(0, 1) == 0) flight.end_s = t;

@@ -157,6 +157,27 @@ TEST(FlightLog, OfVersion1HasNoViews) {
   EXPECT_TRUE(read_file(folder / "log.flight").starts_with("flight 1\n# log of vpe\n"));
 }
 
+TEST(FlightLog, HasTheLinesOfObjectsAtTheirTimes) {
+  const TempDir folder;
+  const std::vector<ObjectCommand> lines{{0.5, "a b", vpe::core::ObjectPlace{1, 2, 3, 4}, {}},
+                                         {1, "c", {}, false},
+                                         {2.5, "a b", vpe::core::ObjectPlace{2, 2, 3, {}}, true}};
+  EXPECT_THROW(FlightLog(folder / "old.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_1).objects(lines),
+               std::logic_error);
+  FlightLog log(folder / "log.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_2);
+  log.objects(lines);
+  for (int k = 0; k < 3; ++k) {
+    log.frame(k, {1.0 * k, 2, 3, 4, 5, 6}, {}, {});
+    const ParsedFlight parsed = parse_flight(read_file(folder / "log.flight"), "log.flight");
+    ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+    EXPECT_EQ(parsed.flight->objects.size(), k == 0 ? 0U : 2U);
+  }
+  log.end(3);
+  const ParsedFlight parsed = parse_flight(read_file(folder / "log.flight"), "log.flight");
+  ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  EXPECT_EQ(parsed.flight->objects, lines);
+}
+
 TEST(FlightLog, IsAValidFlightAtAnyMoment) {
   const TempDir folder;
   FlightLog log(folder / "log.flight", {});

@@ -375,6 +375,39 @@ TEST(Path, ViewsHoldFromTheirTimeOn) {
   EXPECT_EQ(path.at(3).view, (ViewState{{}, {}, DrawnBy::kRay, {}, {}, {}}));  // also backwards
 }
 
+TEST(Path, ObjectsHaveATrackForEachName) {
+  const ParsedFlight parsed = parse_flight(
+      "flight 1.2\nat 0 pose lon=0 lat=0 alt=1000\nat 1 object b show=off\nat 2 object a lon=1 lat=2 heading=3\n"
+      "at 4 object b lon=5 lat=6 show=on\nat 5 object a lon=7 lat=8 height=9\n",
+      "F");
+  ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  const Path path(*parsed.flight, mars::kMarsRadius_m, {});
+  ASSERT_NE(path.tracks(), nullptr);
+  using vpe::core::ObjectTrack;
+  const std::vector<ObjectTrack> wanted{{"a", {{2, {1, 2, 0, 3}}, {5, {7, 8, 9, {}}}}, {}},
+                                        {"b", {{4, {5, 6, 0, {}}}}, {{1, false}, {4, true}}}};
+  EXPECT_EQ(*path.tracks(), wanted);
+  EXPECT_TRUE(is_shown(wanted[1], 0.9));
+  EXPECT_FALSE(is_shown(wanted[1], 1));
+  EXPECT_FALSE(is_shown(wanted[1], 3.9));
+  EXPECT_TRUE(is_shown(wanted[1], 4));
+  EXPECT_EQ(Path(with_views(""), mars::kMarsRadius_m, {}).tracks(), nullptr);
+}
+
+TEST(Path, OppositePlacesOfAnObjectAreRefused) {
+  const ParsedFlight parsed = parse_flight(
+      "flight 1.2\nat 0 pose lon=0 lat=0 alt=1000\nat 1 object a lon=10 lat=20\nat 2 object a lon=190 lat=-20\n",
+      "F");
+  ASSERT_TRUE(parsed.flight.has_value());
+  try {
+    const Path path(*parsed.flight, mars::kMarsRadius_m, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("the object \"a\" is at 2 s opposite"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Path, TheFieldOfViewZoomsEvenlyBetweenItsLinesAndIsHeldOutside) {
   const Path path(with_views("at 10 view fov=60\nat 12 view fov=2\nat 14 view backend=ray\nat 16 view fov=2\n"),
                   mars::kMarsRadius_m, {});

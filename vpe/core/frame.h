@@ -23,6 +23,7 @@
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/certificate.h"
 #include "vpe/core/interest.h"
+#include "vpe/core/object_track.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -99,6 +100,8 @@ struct DrawRequest {
   // are moved to another camera (vpe/warp); no certificate uses it.
   bool want_rough_range = false;
   double time_s = 0;  // of the flight; decides where objects that move are
+  // Says how the flight moves objects of the scene; null: it does not.
+  std::shared_ptr<const std::vector<ObjectTrack>> tracks;
   // False: Frame::colour stays empty, and nothing is loaded for it; the certificate does not know the share of
   // nodata. For ranges at another accuracy than that of the image.
   bool want_colour = true;

@@ -45,7 +45,8 @@ std::string problem_of_speed(double speed_m_per_s) {
 std::size_t bytes_of(const Flight& f) {
   std::size_t bytes =
       sizeof f + f.waypoints.size() * sizeof(Waypoint) + f.heads.size() * sizeof(scripts::HeadCommand) +
-      f.interests.size() * sizeof(scripts::InterestCommand) + f.views.size() * sizeof(scripts::ViewCommand);
+      f.interests.size() * sizeof(scripts::InterestCommand) + f.views.size() * sizeof(scripts::ViewCommand) +
+      f.objects.size() * sizeof(scripts::ObjectCommand);
   for (const scripts::SetCommand& set : f.sets) bytes += sizeof set + set.key.size() + set.text.size();
   return bytes;
 }
@@ -233,6 +234,7 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
   all(next.sets);
   all(next.interests);
   all(next.views);
+  all(next.objects);
   if (next.end_s) next.end_s = time_s(*next.end_s);
   const auto ascend = [](const auto& commands) {
     for (std::size_t i = 1; i < commands.size(); ++i) {
@@ -240,7 +242,12 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
     }
     return true;
   };
-  if (!ascend(next.waypoints) || !ascend(next.heads) || !ascend(next.views)) {
+  bool is_apart = true;
+  for (std::size_t i = 1; i < next.objects.size(); ++i) {
+    const bool was_apart = flight_.objects[i - 1].time_s < flight_.objects[i].time_s;
+    is_apart = is_apart && (!was_apart || next.objects[i - 1].time_s < next.objects[i].time_s);
+  }
+  if (!is_apart || !ascend(next.waypoints) || !ascend(next.heads) || !ascend(next.views)) {
     return "the times would be too close together to tell them apart";
   }
   return change(std::move(next), std::move(what));

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scripts/path.h"
 #include "vpe/core/appearance/settings.h"
@@ -107,6 +109,7 @@ class FlightPlayer {
     keeps_ = other.keeps_;
   }
 
+  const std::shared_ptr<const std::vector<core::ObjectTrack>>& tracks() const { return path_.tracks(); }
   std::span<const scripts::InterestCommand> interests() const { return path_.interests(time_s_); }
 
  private:

@@ -182,5 +182,59 @@ TEST_F(SceneRender, ObjectsMoveWithTheTimeOfAFlight) {
               vpe::core::read_image(dir_ / "reused" / file.filename()).pixels);
 }
 
+// A flight's lines of objects do what a [[path]] does, and can be read back from the film's log.
+TEST_F(SceneRender, AFlightMovesAndHidesObjects) {
+  const std::string pose = "pose lon=20 lat=10 alt=30000 yaw=0 pitch=-12\n";
+  const std::string view = "view fov=60 size=96x72 fps=1\nat 0 " + pose;
+  const auto fly = [&](const std::string& flight, const std::string& folder, const Words& more = {}) {
+    std::ofstream(dir_ / "f.flight") << flight;
+    Words w{"fly", "f.flight", planet().string(), "--scene", "a.scene.toml", "--backend", "ray", "-o", folder};
+    w.insert(w.end(), more.begin(), more.end());
+    return vpe(w);
+  };
+  const auto frame = [&](const std::string& folder, int n) {
+    return vpe::core::read_image(dir_ / folder / ("frame_00000" + std::to_string(n) + ".png")).pixels;
+  };
+  write_scene("[[path]]\nmodel = \"tower\"\nscale = 20000\npoints = [[0, 19, 11.7], [4, 21, 11.7]]\n");
+  ASSERT_EQ(fly("flight 1\n" + view + "at 6 " + pose, "path").exit_code, 0);
+  write_scene("[[object]]\nmodel = \"tower\"\nname = \"the tower\"\nlon = 20\nlat = 11.7\nscale = 20000\n");
+  const std::string lines =
+      "at 0 object \"the tower\" lon=19 lat=11.7\nat 4 object \"the tower\" lon=21 lat=11.7\n"
+      "at 5 object \"the tower\" show=off\n";
+  const Result moved = fly("flight 1.2\n" + view + lines + "at 6 " + pose, "moved", {"--log", "log.flight"});
+  ASSERT_EQ(moved.exit_code, 0) << moved.err;
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(frame("moved", n), frame("path", n)) << n;
+  EXPECT_NE(frame("moved", 1), frame("moved", 2));
+  std::ofstream(dir_ / "bare.flight") << "flight 1\n" << view << "at 6 " << pose;
+  ASSERT_EQ(vpe({"fly", "bare.flight", planet().string(), "--backend", "ray", "-o", "none"}).exit_code, 0);
+  EXPECT_EQ(frame("moved", 5), frame("none", 5));
+  EXPECT_NE(frame("moved", 4), frame("none", 4));
+  // Pixels of things that move are not taken from other frames.
+  ASSERT_EQ(fly("flight 1.2\n" + view + lines + "at 6 " + pose, "reused", {"--reuse", "1"}).exit_code, 0);
+  EXPECT_EQ(frame("reused", 2), frame("moved", 2));
+  // The log is the same flight.
+  ASSERT_EQ(fly(read_text(dir_ / "log.flight"), "replayed").exit_code, 0);
+  for (int n = 0; n < 6; ++n) EXPECT_EQ(frame("replayed", n), frame("moved", n)) << n;
+}
+
+TEST_F(SceneRender, AFlightWithUnknownObjectsIsRefusedBeforeAnyWork) {
+  const auto fly = [&](const std::string& name, const Words& more) {
+    std::ofstream(dir_ / "f.flight") << "flight 1.2\nat 0 pose lon=20 lat=10 alt=30000\nat 1 object " << name
+                                     << " show=off\n";
+    Words w{"fly", "f.flight", planet().string(), "--backend", "ray", "-o", "frames"};
+    w.insert(w.end(), more.begin(), more.end());
+    const Result result = vpe(w);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "frames"));
+    return result.err;
+  };
+  EXPECT_NE(
+      fly("ghost", {"--scene", "a.scene.toml"}).find("the name \"ghost\", which the flight moves, found none"),
+      std::string::npos);
+  EXPECT_NE(
+      fly("ghost", {}).find("moves the object \"ghost\" at 1 s, but there is no scene then; give --scene"),
+      std::string::npos);
+}
+
 }  // namespace
 }  // namespace app_test

@@ -119,6 +119,7 @@ PlannedFrame FilmPlan::alone(std::int64_t frame) const {
   request.view.fov_deg = view.fov_deg.value_or(view_.fov_deg);
   request.settings = out.settings.values();
   request.time_s = out.time_s;
+  request.tracks = path_.tracks();
   request.interest = interest_;
   for (const scripts::InterestCommand& command : path_.interests(out.time_s)) {
     request.interest.push_back(command.region);
@@ -165,7 +166,7 @@ std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planne
   const auto can_be_carried = [](const PlannedFrame& one) {
     // What moves by itself is not where it was in the key frame.
     const std::string& scene = one.request.settings.scene;
-    if (!scene.empty() && !objects::read_scene_file(scene).paths.empty()) return false;
+    if (!scene.empty() && (one.request.tracks || !objects::read_scene_file(scene).paths.empty())) return false;
     return !one.stereo && one.request.settings.haze_visibility_m == 0 && why_not_carried(one.request).empty();
   };
   if (!views_.reuse_px || !can_be_carried(planned)) return std::nullopt;

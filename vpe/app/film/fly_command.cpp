@@ -3,12 +3,14 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "mars/geodesy/place_text.h"
 #include "mars/sources/synthetic.h"
+#include "objects/scene/track.h"
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
@@ -233,6 +235,23 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
   }
 }
 
+// Throws if the flight moves an object that the scene of that time does not have.
+void require_known_objects(const std::string& file, const scripts::Flight& flight, const scripts::Path& path,
+                           const core::Settings& base) {
+  std::map<std::string, objects::SceneFile> scenes;
+  for (const scripts::ObjectCommand& command : flight.objects) {
+    core::Settings settings = base;
+    path.apply_settings(command.time_s, settings);
+    const std::string& name = settings.values().scene;
+    if (name.empty())
+      throw std::runtime_error(file + ": the flight moves the object \"" + command.name + "\" at " +
+                               base::format_number(command.time_s) +
+                               " s, but there is no scene then; give --scene FILE");
+    if (!scenes.contains(name)) scenes[name] = objects::read_scene_file(name);
+    static_cast<void>(objects::track_target(scenes[name], {command.name, {}, {}}));
+  }
+}
+
 struct PlannedFilm {
   core::Backend backend;
   FilmPlan plan;
@@ -340,6 +359,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (!common.quiet && needs_view_palette(base.values(), *planet)) {
     std::fprintf(stderr, "vpe: %s\n", palette_text(first.settings).c_str());
   }
+  require_known_objects(arguments.flight, flight, plan.path(), base);
   if (!arguments.allow_underground) require_above_ground(arguments.flight, plan, terrain);
 
   FrameOverlays overlays(planet);
@@ -349,6 +369,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (!arguments.log.empty())
     reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole,
                         scripts::version_of(flight));
+  if (reports.log) reports.log->objects(flight.objects);
   auto start = std::chrono::steady_clock::now();
   bool is_begun = false;
   Common rest = common;

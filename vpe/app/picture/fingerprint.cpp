@@ -22,6 +22,18 @@ void add(Digest& digest, const core::Palette& palette) {
   for (const core::PaletteStop& stop : palette.stops()) add(digest.add(stop.at), stop.rgb);
 }
 
+void add(Digest& digest, const std::vector<core::ObjectTrack>& tracks) {
+  for (const core::ObjectTrack& track : tracks) {
+    digest.add("track").add(track.name);
+    for (const core::ObjectTrack::Point& point : track.points) {
+      digest.add(point.time_s).add(point.place.lon_deg).add(point.place.lat_deg).add(point.place.height_m);
+      digest.add(std::int64_t{point.place.heading_deg.has_value()}).add(point.place.heading_deg.value_or(0));
+    }
+    for (const core::ObjectTrack::Showing& change : track.showings)
+      digest.add("shown").add(change.time_s).add(std::int64_t{change.is_shown});
+  }
+}
+
 }  // namespace
 
 std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
@@ -56,7 +68,8 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
     const objects::SceneFile scene = objects::read_scene_file(values.scene);
     digest.add("scene");
     for (const std::filesystem::path& file : objects::files_of(scene)) digest.add(checksum_of(file));
-    if (!scene.paths.empty()) digest.add(request.time_s);
+    if (!scene.paths.empty() || request.tracks) digest.add(request.time_s);
+    if (request.tracks) add(digest, *request.tracks);
   }
   if (request.keeps_levels) digest.add("keeps levels");
   if (origin.stereo) {

@@ -27,7 +27,8 @@ class ObjectPass {
         note_(options.note) {}
 
   PlacedScene scene(const core::DrawRequest& request) {
-    PlacedScene placed = library_.scene(request.settings.scene, request.settings.exaggeration, request.time_s);
+    PlacedScene placed = library_.scene(request.settings.scene, request.settings.exaggeration, request.time_s,
+                                        request.tracks.get());
     for (const std::string& text : library_.take_notes()) {
       if (note_) note_(text);
     }

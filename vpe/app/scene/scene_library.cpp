@@ -6,6 +6,7 @@
 
 #include "objects/files/model_file.h"
 #include "objects/scene/scatter.h"
+#include "objects/scene/track.h"
 #include "objects/sticks/stick_file.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/scene/level_cache.h"
@@ -47,8 +48,9 @@ std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEn
   }
   objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
   for (const std::string& note : file.notes) notes_.push_back(entry.file.string() + ": " + note);
-  known.model =
-      std::make_shared<const objects::Model>(entry.name, cached_levels(std::move(file.mesh), models_folder()));
+  KeptLevels made = cached_levels(std::move(file.mesh), models_folder());
+  if (!made.note.empty()) notes_.push_back(entry.file.string() + ": " + made.note);
+  known.model = std::make_shared<const objects::Model>(entry.name, std::move(made.levels));
   known.stamp = stamp.value_or(base::FileStamp());
   known.unit_m = entry.unit_m;
   known.up = entry.up;
@@ -101,6 +103,7 @@ void SceneLibrary::place_standing(double exaggeration) {
   };
   for (const objects::ObjectEntry& entry : entries_.objects) {
     const std::uint32_t name = name_index(entry.name);
+    standing.begins.push_back({standing.instances.size(), standing.interest.size()});
     for (const objects::Placing& placing : entry.places) {
       const double size_m = place(placing, entry.model, name);
       if (entry.interest_levels != 0)
@@ -120,18 +123,66 @@ void SceneLibrary::place_standing(double exaggeration) {
   standing_ = std::move(standing);
 }
 
-PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, double time_s) {
+void SceneLibrary::move(const core::ObjectTrack& track, double time_s, double exaggeration,
+                        std::vector<objects::PathEntry>& paths,
+                        std::vector<std::optional<objects::Instance>>& instances,
+                        std::vector<core::InterestRegion>& interest) const {
+  const objects::TrackTarget target = objects::track_target(entries_, track);
+  const bool is_shown = core::is_shown(track, time_s);
+  if (target.is_path) {
+    objects::PathEntry& path = paths[target.entry];
+    if (!is_shown) {
+      path.points.clear();
+    } else if (!track.points.empty()) {
+      path.points = objects::path_points(track);
+    }
+    return;
+  }
+  const Begin begin = standing_->begins[target.entry];
+  std::optional<objects::Instance>& instance = instances[begin.instance];
+  if (!is_shown) {
+    instance.reset();
+  } else if (!track.points.empty()) {
+    const objects::ObjectEntry& entry = entries_.objects[target.entry];
+    const objects::Placing placing =
+        objects::placing_at(entry.places.front(), objects::path_points(track), time_s);
+    const double size_m = static_cast<double>(models_[entry.model]->ball().radius_m) * placing.scale;
+    objects::Instance moved =
+        objects::place_instance(placing, size_m, surface_.planet_radius_m(), ground(exaggeration));
+    moved.model = instance->model;
+    moved.name = instance->name;
+    instance = moved;
+    if (entry.interest_levels != 0)
+      interest[begin.interest] = region_around(placing.place, size_m, entry.interest_levels);
+  }
+}
+
+PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, double time_s,
+                                const std::vector<core::ObjectTrack>* tracks) {
   read(file);
   if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
-  if (standing_->scene) return {standing_->scene, standing_->interest};
-  std::vector<objects::Instance> instances = standing_->instances;
-  for (const objects::PathEntry& path : entries_.paths) {
+  const bool has_tracks = tracks != nullptr && !tracks->empty();
+  if (standing_->scene && !has_tracks) return {standing_->scene, standing_->interest};
+  std::vector<std::optional<objects::Instance>> placed(standing_->instances.begin(),
+                                                       standing_->instances.end());
+  std::vector<core::InterestRegion> interest = standing_->interest;
+  std::vector<objects::PathEntry> paths = entries_.paths;
+  if (has_tracks) {
+    for (const core::ObjectTrack& track : *tracks) move(track, time_s, exaggeration, paths, placed, interest);
+  }
+  std::vector<objects::Instance> instances;
+  instances.reserve(placed.size() + paths.size());
+  for (const std::optional<objects::Instance>& instance : placed) {
+    if (instance) instances.push_back(*instance);
+  }
+  for (const objects::PathEntry& path : paths) {
+    if (path.points.empty()) continue;
     objects::Instance moving = objects::path_instance(path, time_s, ground(exaggeration));
     moving.model = static_cast<std::uint32_t>(path.model);
     moving.name = name_index(path.name);
     instances.push_back(moving);
   }
-  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), standing_->interest};
+  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), std::move(interest)};
 }
 
 std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes_, {}); }

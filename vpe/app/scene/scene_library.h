@@ -18,6 +18,7 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/file.h"
 #include "vpe/core/interest.h"
+#include "vpe/core/object_track.h"
 
 namespace vpe::app {
 
@@ -33,10 +34,11 @@ class SceneLibrary {
   // `surface` must outlive this.
   explicit SceneLibrary(const paging::Surface& surface) : surface_(surface) {}
 
-  // Returns the objects of a scene file on ground with this exaggeration at a time of the flight. Reads the file, and the
-  // models that it names, when they are new or have changed. Throws what read_scene_file(), read_model_file() and
-  // scatter() throw, and paging::PlanetError.
-  PlacedScene scene(const std::string& file, double exaggeration, double time_s);
+  // Returns the objects of a scene file on ground with this exaggeration at a time of the flight, which may move some
+  // (tracks; null: none). Reads the file, and the models that it names, when they are new or have changed. Throws what
+  // read_scene_file(), read_model_file(), scatter() and track_target() throw, and paging::PlanetError.
+  PlacedScene scene(const std::string& file, double exaggeration, double time_s,
+                    const std::vector<core::ObjectTrack>* tracks = nullptr);
 
   // Returns what readers of models have ignored since the last call, a line each.
   std::vector<std::string> take_notes();
@@ -49,11 +51,17 @@ class SceneLibrary {
     objects::UpAxis up = objects::UpAxis::kAuto;
     std::shared_ptr<const objects::Model> model;
   };
+  // The first instance and the first region of interest of an entry of objects.
+  struct Begin {
+    std::size_t instance = 0;
+    std::size_t interest = 0;
+  };
   // Objects that stand still, on ground of one exaggeration.
   struct Standing {
     double exaggeration = 1;
     std::vector<objects::Instance> instances;
     std::vector<core::InterestRegion> interest;
+    std::vector<Begin> begins;                    // of SceneFile::objects
     std::shared_ptr<const objects::Scene> scene;  // null where others move
   };
 
@@ -62,6 +70,10 @@ class SceneLibrary {
   objects::GroundRadius ground(double exaggeration) const;
   std::uint32_t name_index(const std::string& name);
   void place_standing(double exaggeration);
+  // Moves or hides what a track names. A path that is hidden has no points then.
+  void move(const core::ObjectTrack& track, double time_s, double exaggeration,
+            std::vector<objects::PathEntry>& paths, std::vector<std::optional<objects::Instance>>& instances,
+            std::vector<core::InterestRegion>& interest) const;
 
   const paging::Surface& surface_;
   std::optional<base::FileStamp> stamp_;
