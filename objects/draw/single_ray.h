@@ -20,4 +20,9 @@ struct SeenObject {
 // surfaces count where the opacity on the way passes a half. Pure.
 std::optional<SeenObject> first_object(const Scene& scene, const ObjectRay& ray, double until_m);
 
+// Returns where a ray meets one object before until_m, metres along the ray, as first_object() does; nullopt if it does
+// not. Pure.
+std::optional<double> first_of(const Scene& scene, std::uint32_t instance, const ObjectRay& ray,
+                               double until_m);
+
 }  // namespace objects

@@ -132,6 +132,49 @@ TEST_F(Horizon, NamedFeatures) {
   EXPECT_NE(csv.find(",plain\n"), std::string::npos) << csv;
 }
 
+// A tower of 3 km stands 20 km north of the camera, and a place 60 km behind it.
+TEST_F(Horizon, ObjectsRiseAboveTheSkylineAndHideFeatures) {
+  write_text(
+      dir_ / "tower.obj",
+      "v -0.5 0 -0.5\nv 0.5 0 -0.5\nv 0.5 1 -0.5\nv -0.5 1 -0.5\nv -0.5 0 0.5\nv 0.5 0 0.5\nv 0.5 1 0.5\n"
+      "v -0.5 1 0.5\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  write_text(dir_ / "a.scene.toml",
+             "version = 1\n[[model]]\nname = \"tower\"\nfile = \"tower.obj\"\n[[object]]\nmodel = \"tower\"\n"
+             "name = \"the tower, white\"\nlon = 20\nlat = 10.338\nscale = 3000\n");
+  write_text(dir_ / "names.csv", "name,lon,lat\nBehind,20,11.014\nBeside,20.5,11.014\n");
+  const Words common{"--height", "20000",  "--from", "-10",     "--to",
+                     "10",       "--step", "0.5",    "--names", "names.csv"};
+  const auto with = [&](const Words& more) {
+    Words all = common;
+    all.insert(all.end(), more.begin(), more.end());
+    return ask(all);
+  };
+  const json bare = with({"-o", "bare.csv"});
+  const json summary = with({"-o", "with.csv", "--scene", "a.scene.toml"});
+  EXPECT_FALSE(bare.contains("azimuths_of_objects"));
+  EXPECT_EQ(bare["features_hidden"], 0);
+  // From 20 km up it is all below the skyline, so it hides nothing but ground.
+  EXPECT_EQ(summary["azimuths_of_objects"], 0);
+  EXPECT_EQ(read_text(dir_ / "with.csv").substr(0, read_text(dir_ / "with.csv").find('\n')),
+            "azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m,object");
+  const json low = ask({"--height", "300", "--from", "-10", "--to", "10", "--step", "0.5", "-o", "low.csv",
+                        "--scene", "a.scene.toml", "--names", "names.csv"});
+  const json low_bare =
+      ask({"--height", "300", "--from", "-10", "--to", "10", "--step", "0.5", "-o", "low_bare.csv"});
+  // It is 8.6 degrees wide: 17 azimuths, and some 7 degrees high.
+  EXPECT_NEAR(low["azimuths_of_objects"].get<int>(), 17, 1);
+  EXPECT_NEAR(low["highest"]["elevation_deg"].get<double>(), 8, 2.5);
+  EXPECT_NEAR(low["highest"]["range_m"].get<double>(), 18'700, 700);
+  EXPECT_LT(low_bare["highest"]["elevation_deg"].get<double>(), low["highest"]["elevation_deg"].get<double>());
+  const std::string rows = read_text(dir_ / "low.csv");
+  EXPECT_NE(rows.find(",\"the tower, white\"\n"), std::string::npos);
+  for (const json& feature : low["features"]) {
+    if (feature["name"] != "Behind") continue;
+    EXPECT_EQ(feature["visible"], false);
+    EXPECT_EQ(feature["hidden_by"]["name"], "the tower, white");
+  }
+}
+
 TEST_F(Horizon, ALandscape) {
   ASSERT_EQ(vpe(words({"--height", "2", "--step", "1", "--landscape", "land"})).exit_code, 0);
   EXPECT_NE(read_text(dir_ / "land/landscape.ini").find("polygonal_horizon_list = horizon.txt\n"),

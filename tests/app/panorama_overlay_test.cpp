@@ -88,6 +88,28 @@ TEST_F(PanoramaOverlay, VisibleNamesStandAtTheirPixelsInEveryProjection) {
   }
 }
 
+TEST_F(PanoramaOverlay, ObjectsHideNames) {
+  write_text(dir_ / "wall.obj", "v -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\nf 1 3 2\nf 1 4 3\n");
+  write_text(dir_ / "a.scene.toml",
+             "version = 1\n[[model]]\nname = \"wall\"\nfile = \"wall.obj\"\n[[object]]\nmodel = \"wall\"\n"
+             "lon = 20\nlat = 10.3\nscale = 60000\n");
+  write_text(dir_ / "one.csv", "name,lon,lat\nBehind the wall,20,11.5\n");
+  const auto draw = [&](const std::string& output, const Words& more) {
+    Words words{"panorama", planet().string(), "--at", "20,10", "--altitude", "30000", "--width",
+                "512",      "--backend",       "ray",  "--set", "samples=1",  "-o",    output};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = vpe(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return vpe::core::read_image(dir_ / output).pixels;
+  };
+  const Words names{"--set", "overlay.names=one.csv"};
+  const Words scene{"--scene", "a.scene.toml"};
+  EXPECT_NE(draw("bare.png", {}), draw("names.png", names));
+  Words both = names;
+  both.insert(both.end(), scene.begin(), scene.end());
+  EXPECT_EQ(draw("scene.png", scene), draw("both.png", both));
+}
+
 TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {
   // Three strips.
   const Words more = with(all_of_them(), {"--width", "18000", "--elevation=-3.2,-0.8"});

@@ -16,9 +16,11 @@
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/horizon_files.h"
+#include "vpe/app/panorama/horizon_objects.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/scene/scene_library.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/gazetteer.h"
@@ -42,6 +44,7 @@ struct HorizonArguments {
   std::string features;
   double within_m = 0;  // 0: as far as terrain can be visible at all
   std::string landscape;
+  std::string scene;
 };
 
 constexpr double kLeastStep_deg = 0.0001;
@@ -90,7 +93,7 @@ void check(const HorizonArguments& a) {
     const auto files = landscape_files(a.landscape);
     outputs.insert(outputs.end(), files.begin(), files.end());
   }
-  check_outputs(outputs, {a.planet, a.names});
+  check_outputs(outputs, {a.planet, a.names, a.scene});
 }
 
 // Ranges of the arc, with a column more on each side.
@@ -179,6 +182,7 @@ struct HorizonResult {
   std::vector<panorama::GroundPoint> points;
   std::vector<panorama::Landmark> landmarks;
   panorama::GroundPoint farthest;
+  std::vector<std::string> objects;  // of the points, "" for ground; empty: there is no scene
 
   std::int64_t visible() const {
     return std::count_if(landmarks.begin(), landmarks.end(), [](const auto& l) { return !l.hidden_by; });
@@ -194,7 +198,7 @@ struct HorizonResult {
 };
 
 void write_results(const HorizonArguments& a, const paging::PlanetMeta& meta, const HorizonResult& result) {
-  if (!a.output.empty()) base::write_file(a.output, skyline_csv(result.points));
+  if (!a.output.empty()) base::write_file(a.output, skyline_csv(result.points, result.objects));
   if (!a.features.empty()) base::write_file(a.features, landmarks_csv(result.landmarks));
   if (a.landscape.empty()) return;
   const mars::LonLat place{result.pose.lon_deg, result.pose.lat_deg};
@@ -206,6 +210,8 @@ nlohmann::json summary_json(const HorizonArguments& a, const paging::PlanetMeta&
                             const paging::Surface& surface, const HorizonResult& result) {
   const auto nodata = std::count_if(result.points.begin(), result.points.end(),
                                     [&](const auto& p) { return surface.at(mars::direction(p.place)).nodata; });
+  const auto of_objects = std::count_if(result.objects.begin(), result.objects.end(),
+                                        [](const std::string& name) { return !name.empty(); });
   const auto [lowest, highest] = result.lowest_and_highest();
   nlohmann::json json{{"eye",
                        {{"lon_deg", mars::normalize_lon_deg(result.pose.lon_deg)},
@@ -220,6 +226,7 @@ nlohmann::json summary_json(const HorizonArguments& a, const paging::PlanetMeta&
                       {"highest", point_json(highest)},
                       {"lowest", point_json(lowest)},
                       {"farthest", point_json(result.farthest)}};
+  if (!a.scene.empty()) json["azimuths_of_objects"] = of_objects;
   if (!a.names.empty()) {
     nlohmann::json list = nlohmann::json::array();
     for (const panorama::Landmark& l : result.landmarks) list.push_back(landmark_json(l));
@@ -259,11 +266,21 @@ void horizon(const HorizonArguments& a, const Common& common) {
   const panorama::GroundRange range = [&](const glm::dvec3& ray) {
     return surface.cast(camera.position_m, ray);
   };
+  std::optional<HorizonObjects> things;
+  if (!a.scene.empty()) {
+    SceneLibrary library(surface);
+    things = HorizonObjects{library.scene(a.scene, 1, 0).scene, camera};
+    if (!common.quiet) {
+      for (const std::string& note : library.take_notes())
+        std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+    }
+  }
   base::ThreadPool pool(common.threads);
 
   std::vector<panorama::GroundPoint> points;
   std::vector<panorama::Landmark> seen;
   panorama::GroundPoint farthest;
+  std::vector<std::string> of_objects;
   {
     ProgressLine progress(common.quiet);
     progress.show("ranges", 0);
@@ -279,13 +296,17 @@ void horizon(const HorizonArguments& a, const Common& common) {
                                                                           planet->tree().lowest_radius_m(1.0),
                                                                           meta.highest_radius_m);
       seen = panorama::landmarks(
-          camera, names, within_m, [&](const glm::dvec3& d) { return surface.at(d).radius_m; }, range, pool);
+          camera, names, within_m, [&](const glm::dvec3& d) { return surface.at(d).radius_m; },
+          [&](const glm::dvec3& ray) { return things ? things->range_m(ray, range(ray)) : range(ray); }, pool);
       InterruptGuard::check();
+      if (things) things->name_hiders(seen);
     }
+    if (things) of_objects = things->raise(points, pool);
     progress.show("skyline", 1);
   }
 
-  const HorizonResult result{pose, height_m, std::move(points), std::move(seen), farthest};
+  const HorizonResult result{
+      pose, height_m, std::move(points), std::move(seen), farthest, std::move(of_objects)};
   write_results(a, meta, result);
   if (common.json) {
     print_json(summary_json(a, meta, surface, result));
@@ -331,13 +352,18 @@ void add_horizon(CLI::App& program, Common& common) {
       ->check(number_within(1, 1e11));
   command->add_option("--landscape", arguments->landscape,
                       "Folder to make: the skyline as a Stellarium landscape");
+  command->add_option(
+      "--scene", arguments->scene,
+      "Objects on the ground (*.scene.toml or GeoJSON) that rise above the skyline and hide features");
   add_examples(
       *command,
       {{"the skyline from eye height", "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 -o skyline.csv"},
        {"an arc across north, finely",
         "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 --from -20 --to 20 --step 0.01 -o north.csv"},
        {"which named features can be seen, and what hides the others",
-        "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 --names names.csv --features seen.csv"}});
+        "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 --names names.csv --features seen.csv"},
+       {"with the objects of a scene",
+        "vpe horizon mars.vpe --at 137.4418,-4.5895 --height 2 --scene gale.scene.toml -o skyline.csv"}});
   command->callback([arguments, &common] { horizon(*arguments, common); });
 }
 

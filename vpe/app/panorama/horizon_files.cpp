@@ -27,12 +27,15 @@ std::string csv_point(const panorama::GroundPoint& p) {
 
 }  // namespace
 
-std::string skyline_csv(std::span<const panorama::GroundPoint> skyline) {
-  std::string out = "azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m\n";
-  for (const panorama::GroundPoint& p : skyline) {
+std::string skyline_csv(std::span<const panorama::GroundPoint> skyline, std::span<const std::string> objects) {
+  std::string out = "azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m";
+  out += objects.empty() ? "\n" : ",object\n";
+  for (std::size_t n = 0; n < skyline.size(); ++n) {
+    const panorama::GroundPoint& p = skyline[n];
     out += base::format_number(p.direction.azimuth_deg) + "," +
            format_fixed(p.direction.elevation_deg, kAngleDecimals) + "," + format_fixed(p.range_m, 3) + "," +
-           csv_point(p) + format_fixed(p.elevation_m, 3) + "\n";
+           csv_point(p) + format_fixed(p.elevation_m, 3);
+    out += objects.empty() ? "\n" : "," + csv_field(objects[n]) + "\n";
   }
   return out;
 }

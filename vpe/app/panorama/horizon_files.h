@@ -14,8 +14,10 @@
 
 namespace vpe::app {
 
-// Returns CSV with the columns azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m.
-std::string skyline_csv(std::span<const panorama::GroundPoint> skyline);
+// Returns CSV with the columns azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m, and, where there are names
+// of objects ("" where the skyline is ground; one for each point), object.
+std::string skyline_csv(std::span<const panorama::GroundPoint> skyline,
+                        std::span<const std::string> objects = {});
 
 // Returns CSV with the columns name,lon_deg,lat_deg,diameter_km,azimuth_deg,elevation_deg,range_m,elevation_m,
 // visible, and for hidden ones hidden_by_lon_deg,hidden_by_lat_deg,hidden_by_range_m,hidden_by_elevation_m,

@@ -9,6 +9,8 @@
 #include "panorama/horizon/landmarks.h"
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/panorama/horizon_objects.h"
+#include "vpe/app/scene/scene_library.h"
 #include "vpe/core/appearance/sky.h"
 #include "vpe/overlay/overlay.h"
 #include "vpe/overlay/panorama_overlay.h"
@@ -30,10 +32,16 @@ std::vector<overlay::PanoramaName> visible_names(const PanoramaRequest& request,
   const double highest_m = radius_m + exaggeration * (planet->meta().highest_radius_m - radius_m);
   const double within_m = panorama::farthest_sight_m(radius_m + pose.alt_m,
                                                      planet->tree().lowest_radius_m(exaggeration), highest_m);
+  std::optional<HorizonObjects> things;
+  if (const std::string& file = request.settings.values().scene; !file.empty())
+    things = HorizonObjects{SceneLibrary(surface).scene(file, exaggeration, 0).scene, camera};
+  const auto range_m = [&](const glm::dvec3& ray) {
+    const double ground_m = surface.cast(camera.position_m, ray, exaggeration);
+    return things ? things->range_m(ray, ground_m) : ground_m;
+  };
   const auto landmarks = panorama::landmarks(
       camera, places, within_m, [&](const glm::dvec3& up) { return surface.at(up, exaggeration).radius_m; },
-      [&](const glm::dvec3& ray) { return surface.cast(camera.position_m, ray, exaggeration); }, pool,
-      panorama::Extent::kPoints);
+      range_m, pool, panorama::Extent::kPoints);
   std::vector<overlay::PanoramaName> names;
   for (const panorama::Landmark& l : landmarks) {
     if (l.hidden_by && !l.seen_at) continue;
