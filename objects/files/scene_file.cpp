@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "objects/files/scene_limits.h"
+#include "objects/files/model_companions.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -71,7 +72,11 @@ std::vector<std::filesystem::path> files_of(const SceneFile& scene) {
   std::vector<std::filesystem::path> files{scene.path};
   std::set<std::filesystem::path> known{scene.path};
   for (const ModelEntry& model : scene.models) {
-    if (known.insert(model.file).second) files.push_back(model.file);
+    if (!known.insert(model.file).second) continue;
+    files.push_back(model.file);
+    for (const std::filesystem::path& file : model_companions(model.file)) {
+      if (known.insert(file).second) files.push_back(file);
+    }
   }
   return files;
 }

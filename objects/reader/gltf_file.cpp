@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "objects/files/uri.h"
 #include "objects/reader/gltf_json.h"
 #include "objects/reader/gltf_materials.h"
 #include "objects/reader/refusal.h"

@@ -9,9 +9,6 @@
 
 namespace objects {
 
-// Returns a name of a file with its %20 and the like decoded; data: addresses stay as they are.
-std::string decoded_uri(const std::string& uri);
-
 // Adds to `kept` what gives materials their base colours: materials, textures, samplers and images. Gives `uses` an entry
 // for each material. Throws Refusal for damage, for textures of other formats than PNG and JPEG, and for their names
 // outside of the folder.

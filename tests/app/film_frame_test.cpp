@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +12,7 @@
 #include "tests/support/support.h"
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/picture/fingerprint.h"
+#include "vpe/app/picture/scene_digests.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -50,6 +52,36 @@ TEST(FilmFrame, WhatMovesObjectsIsInItsFingerprint) {
   };
   for (const auto& tracks : kinds) EXPECT_TRUE(seen.insert(of(tracks, 2)).second);
   EXPECT_TRUE(seen.insert(of(kinds[0], 3)).second);
+}
+
+TEST(FilmFrame, FilesOfASceneCountAsTheyAreNow) {
+  const test_support::TempDir folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  };
+  const std::string scene = (folder / "a.scene.toml").string();
+  write("a.scene.toml", "version = 1\n[[model]]\nname = \"m\"\nfile = \"m.obj\"\n");
+  write("m.obj", "mtllib m.mtl\n");
+  write("m.mtl", "map_Kd t.png\n");
+  write("t.png", "red");
+  Inputs i;
+  ASSERT_EQ(i.settings.set("scene", scene), "");
+  const std::string alone = i.fingerprint();
+  i.basis.scenes = std::make_shared<vpe::app::SceneDigests>();
+  EXPECT_EQ(i.fingerprint(), alone);
+  EXPECT_EQ(i.fingerprint(), alone);
+  EXPECT_FALSE(i.basis.scenes->of(scene).has_paths);
+  EXPECT_EQ(i.basis.scenes->of(scene).checksums.size(), 4U);
+  // A texture, then the scene.
+  write("t.png", "green, and longer");
+  const std::string green = i.fingerprint();
+  EXPECT_NE(green, alone);
+  write("a.scene.toml", "version = 1\n[[model]]\nname = \"m\"\nfile = \"m.obj\"\n[[path]]\nmodel = \"m\"\n"
+                        "points = [[0, 1, 2]]\n");
+  EXPECT_NE(i.fingerprint(), green);
+  EXPECT_TRUE(i.basis.scenes->of(scene).has_paths);
+  std::filesystem::remove(folder / "m.obj");
+  EXPECT_THROW(i.fingerprint(), vpe::base::FileError);
 }
 
 TEST(FilmFrame, TheEyesAreInItsFingerprint) {

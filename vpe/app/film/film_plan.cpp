@@ -11,11 +11,11 @@
 #include <string_view>
 #include <utility>
 
-#include "objects/files/scene_file.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/scene_digests.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/base/number.h"
 #include "vpe/core/margin.h"
@@ -63,7 +63,9 @@ FilmPlan::FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path pa
       base_(std::move(base)),
       interest_(std::move(interest)),
       views_(std::move(views)),
-      start_(path_.at(0.0).pose) {}
+      start_(path_.at(0.0).pose) {
+  if (!basis_.scenes) basis_.scenes = std::make_shared<SceneDigests>();
+}
 
 std::vector<core::DrawRequest> PlannedFrame::requests() const {
   if (!stereo) return {request};
@@ -163,10 +165,10 @@ glm::ivec2 FilmPlan::margin_of(std::int64_t key) const {
 }
 
 std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planned) const {
-  const auto can_be_carried = [](const PlannedFrame& one) {
+  const auto can_be_carried = [this](const PlannedFrame& one) {
     // What moves by itself is not where it was in the key frame.
     const std::string& scene = one.request.settings.scene;
-    if (!scene.empty() && (one.request.tracks || !objects::read_scene_file(scene).paths.empty())) return false;
+    if (!scene.empty() && (one.request.tracks || basis_.scenes->of(scene).has_paths)) return false;
     return !one.stereo && one.request.settings.haze_visibility_m == 0 && why_not_carried(one.request).empty();
   };
   if (!views_.reuse_px || !can_be_carried(planned)) return std::nullopt;

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "objects/files/scene_file.h"
 #include "vpe/app/cli/digest.h"
+#include "vpe/app/picture/scene_digests.h"
 #include "vpe/core/appearance/palette.h"
 
 namespace vpe::app {
@@ -65,10 +65,10 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
   if (!values.scene.empty()) {
-    const objects::SceneFile scene = objects::read_scene_file(values.scene);
+    const SceneDigests::Known scene = basis.scenes ? basis.scenes->of(values.scene) : SceneDigests().of(values.scene);
     digest.add("scene");
-    for (const std::filesystem::path& file : objects::files_of(scene)) digest.add(checksum_of(file));
-    if (!scene.paths.empty() || request.tracks) digest.add(request.time_s);
+    for (const std::string& checksum : scene.checksums) digest.add(checksum);
+    if (scene.has_paths || request.tracks) digest.add(request.time_s);
     if (request.tracks) add(digest, *request.tracks);
   }
   if (request.keeps_levels) digest.add("keeps levels");

@@ -1,6 +1,7 @@
 // Fingerprints of images: digests of everything that an image depends on.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,12 +11,16 @@
 
 namespace vpe::app {
 
+class SceneDigests;
+
 // Inputs of an image beside its DrawRequest. The number of threads is not among them: it changes no pixel.
 struct RenderBasis {
   std::string program;  // version
   std::string planet;   // PlanetMeta::identity
   core::Backend backend = core::Backend::kPolygon;
   int memory_mb = 0;  // bounds the number of triangles and the textures
+  // Keeps what images of scenes depend on, for many fingerprints; null: it is read for each.
+  std::shared_ptr<SceneDigests> scenes = nullptr;
 };
 
 // Describes how an image is made of others.

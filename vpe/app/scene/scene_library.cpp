@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "objects/files/model_companions.h"
 #include "objects/files/model_file.h"
 #include "objects/scene/scatter.h"
 #include "objects/scene/track.h"
@@ -33,25 +34,38 @@ std::filesystem::path models_folder() {
   }
 }
 
+using Stamped = std::vector<std::pair<std::filesystem::path, std::optional<base::FileStamp>>>;
+
+Stamped stamped(const std::filesystem::path& model) {
+  Stamped files{{model, base::file_stamp(model)}};
+  for (const std::filesystem::path& file : objects::model_companions(model))
+    files.emplace_back(file, base::file_stamp(file));
+  return files;
+}
+
+bool is_unchanged(const Stamped& files) {
+  return std::ranges::all_of(
+      files, [](const auto& file) { return file.second && base::file_stamp(file.first) == file.second; });
+}
+
 }  // namespace
 
 std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEntry& entry) {
-  const std::optional<base::FileStamp> stamp = base::file_stamp(entry.file);
   KnownModel& known = known_[entry.file];
-  if (known.model && stamp && known.stamp == *stamp && known.unit_m == entry.unit_m && known.up == entry.up)
+  if (known.model && known.unit_m == entry.unit_m && known.up == entry.up && is_unchanged(known.files))
     return known.model;
+  Stamped files = stamped(entry.file);
   if (entry.file.extension() == ".sticks") {
     known.model = std::make_shared<const objects::Model>(
         entry.name, std::make_shared<const objects::StickModel>(objects::read_stick_file(entry.file)));
-    known.stamp = stamp.value_or(base::FileStamp());
-    return known.model;
+  } else {
+    objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
+    for (const std::string& note : file.notes) notes_.push_back(entry.file.string() + ": " + note);
+    KeptLevels made = cached_levels(std::move(file.mesh), models_folder());
+    if (!made.note.empty()) notes_.push_back(entry.file.string() + ": " + made.note);
+    known.model = std::make_shared<const objects::Model>(entry.name, std::move(made.levels));
   }
-  objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
-  for (const std::string& note : file.notes) notes_.push_back(entry.file.string() + ": " + note);
-  KeptLevels made = cached_levels(std::move(file.mesh), models_folder());
-  if (!made.note.empty()) notes_.push_back(entry.file.string() + ": " + made.note);
-  known.model = std::make_shared<const objects::Model>(entry.name, std::move(made.levels));
-  known.stamp = stamp.value_or(base::FileStamp());
+  known.files = std::move(files);
   known.unit_m = entry.unit_m;
   known.up = entry.up;
   return known.model;

@@ -46,7 +46,8 @@ class SceneLibrary {
 
  private:
   struct KnownModel {
-    base::FileStamp stamp;
+    // The file and those that it consists of.
+    std::vector<std::pair<std::filesystem::path, std::optional<base::FileStamp>>> files;
     double unit_m = 1;
     objects::UpAxis up = objects::UpAxis::kAuto;
     std::shared_ptr<const objects::Model> model;
