@@ -5,8 +5,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "objects/files/scene_limits.h"
 #include "objects/files/model_companions.h"
+#include "objects/files/scene_limits.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 

@@ -76,8 +76,9 @@ TEST(FilmFrame, FilesOfASceneCountAsTheyAreNow) {
   write("t.png", "green, and longer");
   const std::string green = i.fingerprint();
   EXPECT_NE(green, alone);
-  write("a.scene.toml", "version = 1\n[[model]]\nname = \"m\"\nfile = \"m.obj\"\n[[path]]\nmodel = \"m\"\n"
-                        "points = [[0, 1, 2]]\n");
+  write("a.scene.toml",
+        "version = 1\n[[model]]\nname = \"m\"\nfile = \"m.obj\"\n[[path]]\nmodel = \"m\"\n"
+        "points = [[0, 1, 2]]\n");
   EXPECT_NE(i.fingerprint(), green);
   EXPECT_TRUE(i.basis.scenes->of(scene).has_paths);
   std::filesystem::remove(folder / "m.obj");

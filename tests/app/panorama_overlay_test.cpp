@@ -110,6 +110,25 @@ TEST_F(PanoramaOverlay, ObjectsHideNames) {
   EXPECT_EQ(draw("scene.png", scene), draw("both.png", both));
 }
 
+TEST_F(PanoramaOverlay, FromItsSidecarItHasTheSameObjectsUnlessTheSceneChanged) {
+  write_text(dir_ / "wall.obj", "v -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n");
+  const std::string scene = "version = 1\n[[model]]\nname = \"wall\"\nfile = \"wall.obj\"\n[[object]]\n"
+                            "model = \"wall\"\nlon = 10\nlat = 5.3\nscale = 9000\n";
+  write_text(dir_ / "a.scene.toml", scene);
+  make("a.png", {"--width", "256", "--scene", "a.scene.toml"});
+  const std::string bytes = read_text(dir_ / "a.png");
+  fs::create_directory(dir_ / "elsewhere");
+  const Words again{"panorama", "--from-sidecar", "a.json", "-o", "elsewhere/b.png", "-q"};
+  const Result same = vpe(again);
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_TRUE(read_text(dir_ / "elsewhere/b.png") == bytes);
+  // A model counts, too.
+  write_text(dir_ / "wall.obj", "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3\nf 1 3 4\n");
+  const Result changed = vpe(again);
+  EXPECT_EQ(changed.exit_code, 1);
+  EXPECT_NE(changed.err.find("a.scene.toml or one of its models has changed"), std::string::npos) << changed.err;
+}
+
 TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {
   // Three strips.
   const Words more = with(all_of_them(), {"--width", "18000", "--elevation=-3.2,-0.8"});

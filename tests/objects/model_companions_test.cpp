@@ -28,17 +28,19 @@ class ModelCompanions : public ::testing::Test {
 TEST_F(ModelCompanions, OfGltfAreItsBuffersAndImages) {
   const fs::path bin = write("a b.bin", "x");
   const fs::path png = write("deep/a.png", "x");
-  const fs::path model = write("m.gltf",
-                               R"({"buffers":[{"uri":"a%20b.bin"},{"uri":"data:;base64,AA"},{"byteLength":1}],)"
-                               R"("images":[{"uri":"deep/a.png"},{"uri":"deep/a.png"},{"uri":"gone.png"},{"uri":7},3]})");
+  const fs::path model = write(
+      "m.gltf", R"({"buffers":[{"uri":"a%20b.bin"},{"uri":"data:;base64,AA"},{"byteLength":1}],)"
+                R"("images":[{"uri":"deep/a.png"},{"uri":"deep/a.png"},{"uri":"gone.png"},{"uri":7},3]})");
   EXPECT_EQ(model_companions(model), (std::vector<fs::path>{bin, png}));
 }
 
 TEST_F(ModelCompanions, OfObjAreItsMaterialsAndTheirTextures) {
-  const fs::path mtl = write("m.mtl", "newmtl a\n map_Kd -s 1 1 1 red.png\r\nmap_d clear glass.png\nmap_Ks gone.png\n");
+  const fs::path mtl =
+      write("m.mtl", "newmtl a\n map_Kd -s 1 1 1 red.png\r\nmap_d clear glass.png\nmap_Ks gone.png\n");
   const fs::path red = write("red.png", "x");
   const fs::path glass = write("clear glass.png", "x");
-  const fs::path model = write("m.OBJ", "# mtllib other.mtl\nmtllib m.mtl\r\nmtllib\nmtllib gone.mtl\nv 0 0 0\n");
+  const fs::path model =
+      write("m.OBJ", "# mtllib other.mtl\nmtllib m.mtl\r\nmtllib\nmtllib gone.mtl\nv 0 0 0\n");
   write("other.mtl", "map_Kd red.png");
   EXPECT_EQ(model_companions(model), (std::vector<fs::path>{glass, mtl, red}));
 }
@@ -47,8 +49,9 @@ TEST_F(ModelCompanions, NothingLiesOutsideTheFolder) {
   const fs::path inside = folder_ / "models";
   write("secret.bin", "x");
   const fs::path model =
-      write("models/m.gltf", R"({"buffers":[{"uri":"../secret.bin"},{"uri":"/etc/passwd"},{"uri":"x/../../secret.bin"},)"
-                             R"({"uri":""},{"uri":"."}]})");
+      write("models/m.gltf",
+            R"({"buffers":[{"uri":"../secret.bin"},{"uri":"/etc/passwd"},{"uri":"x/../../secret.bin"},)"
+            R"({"uri":""},{"uri":"."}]})");
   EXPECT_TRUE(model_companions(model).empty());
 }
 

@@ -19,6 +19,7 @@
 #include "vpe/app/panorama/panorama_maker.h"
 #include "vpe/app/panorama/panorama_plan.h"
 #include "vpe/app/panorama/panorama_request.h"
+#include "vpe/app/panorama/panorama_scene.h"
 #include "vpe/app/panorama/panorama_stereo.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/sun_statement.h"
@@ -218,6 +219,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   PanoramaRequest request = parse_panorama(arguments, common);
   const PanoramaPlan plan = plan_panorama(request);
   resolve_overlays(request);
+  resolve_scene(request);
   check_stereo_panorama(request);
   check_files(request, plan, common.memory_mb);
 

@@ -64,6 +64,7 @@ struct PanoramaRequest {
   int memory_mb = 0;  // bounds what polygons may take; 0 for rays, whose images do not depend on it
   bool allow_incomplete = false;
   std::string names_checksum;  // of the file of overlay.names, when it is set
+  std::string scene_checksum;  // of the scene and its models, when there is one
 
   // How this run makes it.
   std::string latitude;            // as --latitude: of camera and interest, until the planet is open

@@ -65,7 +65,8 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
   if (!values.scene.empty()) {
-    const SceneDigests::Known scene = basis.scenes ? basis.scenes->of(values.scene) : SceneDigests().of(values.scene);
+    const SceneDigests::Known scene =
+        basis.scenes ? basis.scenes->of(values.scene) : SceneDigests().of(values.scene);
     digest.add("scene");
     for (const std::string& checksum : scene.checksums) digest.add(checksum);
     if (scene.has_paths || request.tracks) digest.add(request.time_s);
