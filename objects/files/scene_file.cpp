@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "objects/files/model_companions.h"
+#include "objects/files/model_references.h"
 #include "objects/files/scene_limits.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -74,7 +74,7 @@ std::vector<std::filesystem::path> files_of(const SceneFile& scene) {
   for (const ModelEntry& model : scene.models) {
     if (!known.insert(model.file).second) continue;
     files.push_back(model.file);
-    for (const std::filesystem::path& file : model_companions(model.file)) {
+    for (const std::filesystem::path& file : model_references(model.file)) {
       if (known.insert(file).second) files.push_back(file);
     }
   }

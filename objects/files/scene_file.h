@@ -141,7 +141,7 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path);
 SceneFile parse_scene_geojson(std::string_view text, const std::filesystem::path& path);
 
-// Returns the scene file, the files of its models, and those that they consist of (model_companions.h), each once.
+// Returns the scene file, the files of its models, and those that they consist of (model_references.h), each once.
 std::vector<std::filesystem::path> files_of(const SceneFile& scene);
 
 }  // namespace objects

@@ -112,8 +112,9 @@ TEST_F(PanoramaOverlay, ObjectsHideNames) {
 
 TEST_F(PanoramaOverlay, FromItsSidecarItHasTheSameObjectsUnlessTheSceneChanged) {
   write_text(dir_ / "wall.obj", "v -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n");
-  const std::string scene = "version = 1\n[[model]]\nname = \"wall\"\nfile = \"wall.obj\"\n[[object]]\n"
-                            "model = \"wall\"\nlon = 10\nlat = 5.3\nscale = 9000\n";
+  const std::string scene =
+      "version = 1\n[[model]]\nname = \"wall\"\nfile = \"wall.obj\"\n[[object]]\n"
+      "model = \"wall\"\nlon = 10\nlat = 5.3\nscale = 9000\n";
   write_text(dir_ / "a.scene.toml", scene);
   make("a.png", {"--width", "256", "--scene", "a.scene.toml"});
   const std::string bytes = read_text(dir_ / "a.png");
@@ -126,7 +127,8 @@ TEST_F(PanoramaOverlay, FromItsSidecarItHasTheSameObjectsUnlessTheSceneChanged) 
   write_text(dir_ / "wall.obj", "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3\nf 1 3 4\n");
   const Result changed = vpe(again);
   EXPECT_EQ(changed.exit_code, 1);
-  EXPECT_NE(changed.err.find("a.scene.toml or one of its models has changed"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("a.scene.toml or one of its models has changed"), std::string::npos)
+      << changed.err;
 }
 
 TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {

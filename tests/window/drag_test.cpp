@@ -173,7 +173,7 @@ TEST_F(ExploreWindowTest, AutoChangesTheBackendOnTheWay) {
   EXPECT_EQ(window_->drawn()->request.backend, core::Backend::kPolygon);
   EXPECT_TRUE(window_->drawn()->result.missing.empty());
   window_->session().put({20, 30, 50'000, 0, -30, 0});
-  for (int n = 0; n < 2000 && window_->drawn()->request.backend == core::Backend::kPolygon; ++n) iterate(1);
+  for (int n = 0; n < 20'000 && window_->drawn()->request.backend == core::Backend::kPolygon; ++n) iterate(1);
   EXPECT_TRUE(window_->drawn()->result.missing.empty()) << "the first image is complete";
   settle();
   EXPECT_TRUE(window_->shows_final_image());

@@ -243,7 +243,7 @@ TEST_F(DrawingTest, UnsavedDrawingsHaveACopyAndProjectsReturn) {
   const mars::Pose pose{12, 34, 500'000, 10, -60, 0};
   window_->session().put(pose);
   with_control("s");
-  for (int n = 0; n < 300 && !copies().empty(); ++n) iterate(1);
+  for (int n = 0; n < 5'000 && !copies().empty(); ++n) iterate(1);
   EXPECT_TRUE(copies().empty());
   fs::path file;
   for (const auto& entry : fs::directory_iterator(folder_.path()))

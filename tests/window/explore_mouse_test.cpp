@@ -159,7 +159,7 @@ TEST_F(ExploreMouseTest, ADroppedPlanetIsShownNext) {
   open();
   drop(other);
   bool is_open = true;
-  for (int n = 0; n < 1000 && window_->next_planet() == nullptr && is_open; ++n) is_open = window_->step(0.01);
+  for (int n = 0; n < 20'000 && window_->next_planet() == nullptr && is_open; ++n) is_open = window_->step(0.01);
   ASSERT_NE(window_->next_planet(), nullptr);
   EXPECT_EQ(window_->next_planet()->path(), other);
   EXPECT_EQ(window_->next_planet_file(), other);
@@ -171,7 +171,7 @@ TEST_F(ExploreMouseTest, ADroppedFileThatIsNoPlanetIsReportedAndTheWindowContinu
   extra_.open_planet = [](const std::string& file) { return app::open_planet(file, app::Common{}); };
   open();
   drop(text);
-  for (int n = 0; n < 1000 && !window_->state().message_is_error; ++n) ASSERT_TRUE(window_->step(0.01));
+  for (int n = 0; n < 20'000 && !window_->state().message_is_error; ++n) ASSERT_TRUE(window_->step(0.01));
   EXPECT_TRUE(window_->state().message_is_error);
   EXPECT_NE(window_->state().message.find("notes.txt"), std::string::npos) << window_->state().message;
   EXPECT_EQ(window_->next_planet(), nullptr);

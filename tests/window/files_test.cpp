@@ -162,14 +162,14 @@ TEST_F(FilesTest, FilesOfEveryKindAreOpened) {
   const fs::path panorama = folder_ / "p.json";
   std::ofstream(panorama) << "{}\n";
   enter(panorama.string());
-  for (int n = 0; n < 200 && commands_.empty(); ++n) iterate(1);
+  for (int n = 0; n < 5'000 && commands_.empty(); ++n) iterate(1);
   ASSERT_EQ(commands_.size(), 1U);
   EXPECT_EQ(commands_.front(), (Words{"overlook", panorama.string()}));
   EXPECT_TRUE(window_->unfinished().empty());  // a window is nothing to be continued
   const fs::path other = folder_ / "other.vpe";
   std::ofstream(other) << "-";
   enter(other.string());
-  for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
+  for (int n = 0; n < 5'000 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(window_->next_planet(), planet_);
   EXPECT_EQ(opened, other.string());
   EXPECT_EQ(window_->recent(),
@@ -210,7 +210,7 @@ TEST_F(FilesTest, ARasterIsBuiltWithProgressAndCanBeStopped) {
   enter(raster.string());
   ASSERT_EQ(commands_.size(), 3U);
   fake_->state = {false, 1, "", false};
-  for (int n = 0; n < 1000 && window_->next_planet() == nullptr; ++n) iterate(1);
+  for (int n = 0; n < 20'000 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(window_->next_planet(), planet_);
   EXPECT_EQ(opened, raster.string());
   EXPECT_EQ(window_->recent().front(), raster.string());
@@ -230,7 +230,7 @@ TEST_F(FilesTest, PlanetsAreListed) {
   click("file/##Planets");
   iterate(3);
   click("file/##Planets=a.vpe##0");
-  for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
+  for (int n = 0; n < 5'000 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(window_->next_planet_file(), folder_ / "a.vpe");
   EXPECT_EQ(commands_.size(), 1U);
 }
@@ -253,7 +253,7 @@ TEST_F(FilesTest, AProjectIsOpenedWithItsPlanet) {
   wait_for("unknown");
   EXPECT_TRUE(window_->state().message_is_error);
   enter(file.string());
-  for (int n = 0; n < 500 && window_->next_planet() == nullptr; ++n) iterate(1);
+  for (int n = 0; n < 5'000 && window_->next_planet() == nullptr; ++n) iterate(1);
   EXPECT_EQ(opened, "/planets/q.vpe");
   EXPECT_EQ(window_->next_project(), file);
 }

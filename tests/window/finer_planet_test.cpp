@@ -35,7 +35,7 @@ class FinerPlanet : public ExploreWindowTest {
     };
     open();
     settle();
-    for (int n = 0; n < 1000 && !begun_; ++n) iterate(1);
+    for (int n = 0; n < 20'000 && !begun_; ++n) iterate(1);
     ASSERT_TRUE(begun_);
   }
 
@@ -52,7 +52,7 @@ TEST_F(FinerPlanet, ReplacesTheFirstOneInPlace) {
   const auto coarse_image = window_->image().pixels;
   const mars::Pose pose = window_->session().pose();
   may_end_ = true;
-  for (int n = 0; n < 2000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
+  for (int n = 0; n < 20'000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
   ASSERT_EQ(&window_->session().surface().planet(), finer_.get());
   EXPECT_EQ(window_->state().message, "the planet is complete");
   settle();
@@ -69,7 +69,7 @@ TEST_F(FinerPlanet, TheCameraStaysAboveItsGround) {
                        0,  0,  0};
   window_->session().put(low);
   may_end_ = true;
-  for (int n = 0; n < 2000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
+  for (int n = 0; n < 20'000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
   EXPECT_GT(window_->session().height_m(), 0);
 }
 
@@ -77,7 +77,7 @@ TEST_F(FinerPlanet, TheWindowFileTellsProgressAndStopsIt) {
   open_coarse();
   ASSERT_EQ(window_->act({explore::ActionKind::kFiles}), "");
   click("file/Stop##planet");
-  for (int n = 0; n < 1000 && !stopped_; ++n) iterate(1);
+  for (int n = 0; n < 20'000 && !stopped_; ++n) iterate(1);
   EXPECT_TRUE(stopped_);
   EXPECT_TRUE(waits_for("file/Stop##planet", false));
   EXPECT_FALSE(window_->state().message_is_error);
@@ -93,7 +93,7 @@ TEST_F(FinerPlanet, ClosingTheWindowStopsIt) {
 TEST_F(FinerPlanet, AFailureIsShownAndTheFirstOneStays) {
   open_coarse();
   fails_ = may_end_ = true;
-  for (int n = 0; n < 2000 && !window_->state().message_is_error; ++n) iterate(1);
+  for (int n = 0; n < 20'000 && !window_->state().message_is_error; ++n) iterate(1);
   EXPECT_EQ(window_->state().message, "the disk is full");
   EXPECT_EQ(&window_->session().surface().planet(), planet_.get());
 }

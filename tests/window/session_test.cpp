@@ -97,7 +97,7 @@ TEST_F(SessionTest, IsTheSameFromItsLog) {
   EXPECT_TRUE(window_->session().set("colour", "slope").empty());
   watch(20);
   EXPECT_NE(window_->session().look().yaw_deg, 0);
-  for (int n = 0; n < 2000 && window_->session().player()->is_playing(); ++n) watch(1);
+  for (int n = 0; n < 20'000 && window_->session().player()->is_playing(); ++n) watch(1);
   EXPECT_TRUE(window_->session().player()->at_end());
   // A slow machine shows few images while the flight plays. The log goes on behind its end.
   for (int look = 0; look < 20 && shown_.size() < 8; ++look) {
@@ -106,9 +106,9 @@ TEST_F(SessionTest, IsTheSameFromItsLog) {
     move(415, 205);
     watch(2);
     robot_->release();
-    for (int n = 0; n < 2000 && !window_->is_at_rest(); ++n) watch(1);
+    for (int n = 0; n < 20'000 && !window_->is_at_rest(); ++n) watch(1);
   }
-  for (int n = 0; n < 2000 && !window_->is_at_rest(); ++n) watch(1);
+  for (int n = 0; n < 20'000 && !window_->is_at_rest(); ++n) watch(1);
   // Looking around has not moved the flight.
   EXPECT_EQ(flown, window_->session().flights().editor()->flight());
   EXPECT_EQ(window_->session().pose().lon_deg, flown.waypoints.back().lon_deg);
@@ -156,7 +156,7 @@ TEST_F(SessionTest, ZoomsBackendsAndEyesReplayFromItsLog) {
   open();
   const auto rest = [&] {
     watch(6);
-    for (int n = 0; n < 2000 && !window_->is_at_rest(); ++n) watch(1);
+    for (int n = 0; n < 20'000 && !window_->is_at_rest(); ++n) watch(1);
   };
   ASSERT_EQ(window_->act({explore::ActionKind::kRecord}), "");
   window_->session().set_fov(30);
@@ -222,7 +222,7 @@ TEST_F(SessionTest, ImagesByRaysThatNobodyNamedAreTheSameFromItsLog) {
   ASSERT_EQ(window_->act({explore::ActionKind::kRecord}), "");
   window_->session().set_fov(40);
   watch(6);
-  for (int n = 0; n < 2000 && !window_->is_at_rest(); ++n) watch(1);
+  for (int n = 0; n < 20'000 && !window_->is_at_rest(); ++n) watch(1);
   ASSERT_EQ(window_->act({explore::ActionKind::kRecord}), "");
   ASSERT_FALSE(shown_.empty());
   const Shown shown = shown_.back();
@@ -326,7 +326,7 @@ TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheCamera) {
   send(sizeof head - 1);
   iterate(3);
   EXPECT_EQ(window_->session().look().yaw_deg, 0);
-  for (int n = 0; n < 300 && window_->session().look().yaw_deg < 19; ++n) {
+  for (int n = 0; n < 5'000 && window_->session().look().yaw_deg < 19; ++n) {
     send(sizeof head);
     iterate(1);
   }

@@ -31,7 +31,7 @@ class WindowTest : public testing::Test {
 
   // Runs the event loop until nothing moves, loads or waits.
   void settle() {
-    for (int n = 0; n < 2000; ++n) {
+    for (int n = 0; n < 30'000; ++n) {
       ASSERT_TRUE(window_->step(0.01));
       if (n > 5 && window_->is_at_rest()) return;
     }
@@ -58,7 +58,7 @@ class WindowTest : public testing::Test {
   }
   // Waits for a frame that shows the widget.
   bool waits_for(const std::string& label, bool is_there = true) {
-    for (int n = 0; n < 500 && window_->widgets().places().contains(label) != is_there; ++n)
+    for (int n = 0; n < 5'000 && window_->widgets().places().contains(label) != is_there; ++n)
       if (!window_->step(0.01)) return false;
     return window_->widgets().places().contains(label) == is_there;
   }

@@ -20,10 +20,11 @@ void resolve_scene(PanoramaRequest& request) {
   for (const std::string& checksum : SceneDigests().of(file).checksums) digest.add(checksum);
   const std::string checksum = digest.hex();
   if (!request.scene_checksum.empty() && request.scene_checksum != checksum) {
-    throw std::runtime_error(file +
-                             " or one of its models has changed since the image was made, so its objects differ; "
-                             "restore the old files, or make a new image with --scene " +
-                             file);
+    throw std::runtime_error(
+        file +
+        " or one of its models has changed since the image was made, so its objects differ; "
+        "restore the old files, or make a new image with --scene " +
+        file);
   }
   request.scene_checksum = checksum;
 }

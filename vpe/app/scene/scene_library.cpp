@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "objects/files/model_companions.h"
+#include "objects/files/model_references.h"
 #include "objects/files/model_file.h"
 #include "objects/scene/scatter.h"
 #include "objects/scene/track.h"
@@ -38,7 +38,7 @@ using Stamped = std::vector<std::pair<std::filesystem::path, std::optional<base:
 
 Stamped stamped(const std::filesystem::path& model) {
   Stamped files{{model, base::file_stamp(model)}};
-  for (const std::filesystem::path& file : objects::model_companions(model))
+  for (const std::filesystem::path& file : objects::model_references(model))
     files.emplace_back(file, base::file_stamp(file));
   return files;
 }

@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
   request.view.height = 180;
   request.sun = mars::sun_direction({lon_deg, lat_deg}, 120, 35);
   request.settings.ray_mode = core::RayMode::kMultires;
-  std::unique_ptr<core::PixelRenderer> renderer = vpe::voxel::make_ray_renderer(planet, {std::size_t{256} << 20, 1});
+  std::unique_ptr<core::PixelRenderer> renderer =
+      vpe::voxel::make_ray_renderer(planet, {std::size_t{256} << 20, 1});
   if (kind == "objects") renderer = vpe::app::with_objects(std::move(renderer), planet, {});
   double sum = 0;
   for (int n = std::atoi(argv[4]); n > 0; --n) {

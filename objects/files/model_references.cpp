@@ -1,4 +1,4 @@
-#include "objects/files/model_companions.h"
+#include "objects/files/model_references.h"
 
 #include <algorithm>
 #include <cctype>
@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 
 // Collects files of a folder and below it.
-class Companions {
+class FoundFiles {
  public:
-  explicit Companions(const fs::path& model) : folder_(model.parent_path()) {}
+  explicit FoundFiles(const fs::path& model) : folder_(model.parent_path()) {}
 
   // Returns the path of a file that a model or its materials name; empty if there is none.
   fs::path add(const std::string& name) {
@@ -51,7 +51,7 @@ std::string text_of(const fs::path& file) {
   }
 }
 
-void add_of_gltf(const fs::path& model, Companions& companions) {
+void add_of_gltf(const fs::path& model, FoundFiles& found) {
   const nlohmann::json document = nlohmann::json::parse(text_of(model), nullptr, false);
   if (!document.is_object()) return;
   for (const char* list : {"buffers", "images"}) {
@@ -61,7 +61,7 @@ void add_of_gltf(const fs::path& model, Companions& companions) {
       const auto uri = entry.is_object() ? entry.find("uri") : entry.end();
       if (!entry.is_object() || uri == entry.end() || !uri->is_string()) continue;
       const std::string name = decoded_uri(uri->get<std::string>());
-      if (!name.starts_with("data:")) companions.add(name);
+      if (!name.starts_with("data:")) found.add(name);
     }
   }
 }
@@ -84,32 +84,32 @@ void each_line(std::string_view text, const Take& take) {
   }
 }
 
-void add_of_obj(const fs::path& model, Companions& companions) {
+void add_of_obj(const fs::path& model, FoundFiles& found) {
   std::set<fs::path> materials;
   each_line(text_of(model), [&](std::string_view key, std::string_view rest) {
-    if (key == "mtllib") materials.insert(companions.add(std::string(rest)));
+    if (key == "mtllib") materials.insert(found.add(std::string(rest)));
   });
   for (const fs::path& file : materials) {
     if (file.empty()) continue;
     each_line(text_of(file), [&](std::string_view key, std::string_view rest) {
       if (!key.starts_with("map_")) return;
       // Options stand before the name, which may have blanks.
-      if (!companions.add(std::string(rest)).empty()) return;
+      if (!found.add(std::string(rest)).empty()) return;
       const std::size_t blank = rest.find_last_of(" \t");
-      if (blank != std::string_view::npos) companions.add(std::string(rest.substr(blank + 1)));
+      if (blank != std::string_view::npos) found.add(std::string(rest.substr(blank + 1)));
     });
   }
 }
 
 }  // namespace
 
-std::vector<fs::path> model_companions(const fs::path& model) {
+std::vector<fs::path> model_references(const fs::path& model) {
   std::string extension = model.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  Companions companions(model);
-  if (extension == ".gltf") add_of_gltf(model, companions);
-  if (extension == ".obj") add_of_obj(model, companions);
-  return companions.files();
+  FoundFiles found(model);
+  if (extension == ".gltf") add_of_gltf(model, found);
+  if (extension == ".obj") add_of_obj(model, found);
+  return found.files();
 }
 
 }  // namespace objects
