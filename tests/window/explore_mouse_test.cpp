@@ -159,7 +159,8 @@ TEST_F(ExploreMouseTest, ADroppedPlanetIsShownNext) {
   open();
   drop(other);
   bool is_open = true;
-  for (int n = 0; n < 20'000 && window_->next_planet() == nullptr && is_open; ++n) is_open = window_->step(0.01);
+  for (int n = 0; n < 20'000 && window_->next_planet() == nullptr && is_open; ++n)
+    is_open = window_->step(0.01);
   ASSERT_NE(window_->next_planet(), nullptr);
   EXPECT_EQ(window_->next_planet()->path(), other);
   EXPECT_EQ(window_->next_planet_file(), other);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "objects/files/model_references.h"
 #include "objects/files/model_file.h"
+#include "objects/files/model_references.h"
 #include "objects/scene/scatter.h"
 #include "objects/scene/track.h"
 #include "objects/sticks/stick_file.h"
