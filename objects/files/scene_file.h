@@ -19,7 +19,8 @@
 //   diameter_m = [0.5, 4]
 //   [[path]]                                   # model; name, scale = 1
 //   model = "rover"                            # wheelbase_m and track_m, or neither
-//   points = [[0, 137.4, -4.6], [60, 137.5, -4.6, 90]]  # seconds, lon, lat, heading, height above the ground
+//   points = [[0, 137.4, -4.6], [60, 137.5, -4.6, 90]]  # seconds, lon, lat, heading
+//                                            # and height above the ground; "way": heading along the way
 //
 // GeoJSON (`*.geojson`, `*.json`) is a FeatureCollection of Points. The properties model (a path), name, height,
 // altitude, heading, pitch, roll, scale and align are read; others are not, nor is a third coordinate.

@@ -23,6 +23,7 @@
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/scene/model_ball.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/core/appearance/gazetteer.h"
 #include "vpe/explore/command_words.h"
@@ -220,6 +221,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.as_drawn = as_drawn;
   setup.sun = sun_for;
   setup.threads = common.threads;
+  setup.model_ball = model_ball;
   setup.open_planet = [common](const std::string& file) { return open_planet(file, common); };
   setup.builds_first = [](const std::string& file) { return file.empty() || is_raster_argument(file); };
   setup.start_job = [common](const std::vector<std::string>& words) {
@@ -329,6 +331,8 @@ void explore(const ExploreArguments& given, const Common& common) {
     if (const std::string message = shown.exit_message(); !message.empty())
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     if (const std::string message = shown.drawings_message(); !message.empty())
+      std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
+    if (const std::string message = shown.objects_message(); !message.empty())
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     for (const std::vector<std::string>& words : shown.unfinished())
       std::fprintf(stderr, "vpe: note: stopped with the window; this continues it: %s\n",

@@ -76,6 +76,10 @@ void ExploreWindow::open_file(const std::string& name) {
   const fs::path whole = fs::absolute(file).lexically_normal();
   if (whole.extension() == ".flight") return open_flight(whole);
   if (explore::is_project_file(whole.string())) return open_project_file(whole);
+  if (whole.extension() == ".toml") {
+    files_.add_recent(whole.string());
+    return objects_.open(whole, session_);
+  }
   if (is_image_of_panorama(whole)) {
     files_.add_recent(whole.string());
     return start_job(shown_panorama(whole));
@@ -118,6 +122,9 @@ void ExploreWindow::open_project_file(const fs::path& file) {
 }
 
 void ExploreWindow::make(const MakeRequest& request) {
+  // They are made by commands, which read the file.
+  if (objects_.editor().is_changed())
+    return show_message("save the scene first (panel Objects): images and films are made of its file", true);
   explore::MakeOptions options;
   options.planet = setup_.planet_file.string();
   options.width_px = request.size.width_px;

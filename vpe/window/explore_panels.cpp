@@ -168,8 +168,8 @@ void ExploreWindow::draw_tabs() {
   const float scale = static_cast<float>(display_.scale());
   // Tabs stand closer than other widgets, so that all of them fit.
   const auto dense = [scale] {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * scale, 3 * scale});
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, {2 * scale, 2 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {scale, 3 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, {scale, 2 * scale});
   };
   const auto tab = [&](const char* label) {
     dense();
@@ -215,6 +215,10 @@ void ExploreWindow::draw_tabs() {
   }
   if (tab("Draw")) {
     drawing_.draw(widgets_);
+    ImGui::EndTabItem();
+  }
+  if (tab("Objects")) {
+    objects_.draw(session_, widgets_);
     ImGui::EndTabItem();
   }
   if (tab("Look")) {

@@ -1,4 +1,5 @@
 // Drawings and project of the explore window.
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
@@ -40,6 +41,7 @@ fs::path whole_path(const fs::path& file) {
 // Takes over the project that the window was opened with. Returns what is wrong, or "".
 std::string ExploreWindow::open_project() {
   drawing_.join(project_bookmarks_);
+  drawing_.join(objects_.editor());
   map_.set_overlay(&drawing_);
   drawing_.offer(drawing_copy_.abandoned());
   if (!setup_.project) return {};
@@ -60,15 +62,23 @@ bool ExploreWindow::handle_marks(const Event& event) {
   const bool is_over_view = !state_.large_map && !io.WantCaptureMouse && state_.image_error.empty();
   const ImageLayout layout = image_layout();
   // What is held stays in the image of the eye in which it was taken.
-  const bool holds = drawing_.sketch().held() || flight_.holds_pose();
+  const bool holds = drawing_.sketch().held() || flight_.holds_pose() || objects_.holds();
   const int eye = holds ? held_eye_ : layout.eye_at(cursor_);
   if (event.kind == Event::Kind::kPress) held_eye_ = eye;
   std::optional<glm::dvec2> xy;
   if (is_over_view && layout.image_area().holds(cursor_.x, cursor_.y)) xy = layout.xy_of(eye, cursor_);
   const core::View view = eye_image(eye).view;
+  // Of two tools that of the panel that is shown counts.
+  if (objects_.is_placing() && drawing_.sketch().tool()) {
+    if (objects_.is_shown())
+      drawing_.sketch().choose(std::nullopt);
+    else
+      objects_.stop_placing();
+  }
   const bool draws = drawing_.sketch().tool().has_value();
   const bool is_typing = io.WantTextInput || panel_focus_.is_on();
-  const bool is_mine = drawing_.handle(event, xy, is_typing, session_, view) ||
+  const bool is_mine = (!draws && objects_.handle(event, xy, is_typing, session_, view)) ||
+                       drawing_.handle(event, xy, is_typing, session_, view) ||
                        (!draws && flight_.handle(event, xy, session_, view));
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
   return is_mine;
@@ -139,6 +149,12 @@ void ExploreWindow::keep_drawings() {
     return project_text();
   });
   if (!problem.empty()) show_message(problem, true);
+}
+
+void ExploreWindow::keep_scene() {
+  if (objects_.update(now_s(), !maker_->is_idle())) frames_due_ = std::max(frames_due_, 1);
+  const ObjectsActions actions = objects_.take_actions();
+  if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
 }
 
 void ExploreWindow::restore_drawings(const fs::path& copy) {

@@ -43,9 +43,14 @@ void ExploreWindow::request_image() {
   session_.resize(size.x, size.y);
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
+  const std::string scene = objects_.shown_file(session_);
+  // What stands in a scene depends on the time.
+  const std::string objects = scene.empty() ? ""
+                                            : " " + scene + " " + std::to_string(objects_.shown_revision()) +
+                                                  " " + base::format_number(objects_.time_s());
   const std::string state =
       std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m);
+      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects;
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
@@ -58,6 +63,7 @@ void ExploreWindow::request_image() {
   request.convergence_m = chosen.convergence_m;
   request.draw.view = next->view;
   request.draw.settings = session_.settings().values();
+  request.draw.settings.scene = scene;
   request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
   request.draw.interest = session_.all_interest();
   request.draw.coarsening = next->multiplier;
@@ -88,8 +94,7 @@ void ExploreWindow::request_image() {
   request.px_per_screen_px = next->side;
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;
-  const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
-  if (flight != nullptr) request.flight_time_s = flight->time_s();
+  request.flight_time_s = objects_.time_s();
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));
@@ -268,6 +273,7 @@ void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {
   if (!measure_.points().empty()) measure_.draw_marks(list, session_, eye);
   draw_flight_marks(list, session_, flight_.selected(), eye);
   drawing_.draw_marks(list, session_, under_cursor_, eye);
+  objects_.draw_marks(list, session_, eye);
   guide_.draw_marks(list, session_, eye);
   if (session_.mouse_use() == explore::MouseUse::kTilt && session_.held_m())
     draw_pivot_mark(list, *session_.held_m(), eye);

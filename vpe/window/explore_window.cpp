@@ -44,6 +44,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       files_(setup_.recent, setup_.folder),
       jobs_(setup_.start_job),
       welcome_(search_.places()),
+      objects_(setup_.model_ball, setup_.folder, setup_.state, [] { Display::wake(); }),
       drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
       project_file_(setup_.project_file),
       drawing_copy_(setup_.state, ".vpeproj", "drawings"),
@@ -87,6 +88,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
     show_message("an earlier session left an unsaved flight: 'Restore' in the panel 'Flight' opens it");
   else if (!drawing_copy_.abandoned().empty())
     show_message("an earlier session left unsaved drawings: 'Restore' in the panel 'Draw' adds them");
+  else if (!objects_.abandoned().empty())
+    show_message("an earlier session left an unsaved scene: 'Restore' in the panel 'Objects' opens it");
 }
 
 ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
@@ -101,7 +104,7 @@ void ExploreWindow::run() {
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
   return maker_->is_idle() && maps_rest() && measure_.is_at_rest() && drawing_.is_at_rest() &&
-         !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
+         objects_.is_at_rest() && !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
          live_.state() == lod::RefinementState::kWaiting;
 }
 
@@ -155,7 +158,8 @@ bool ExploreWindow::is_over_view() const {
 bool ExploreWindow::step(double wait_s) {
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
   const bool plays = flight != nullptr && flight->is_playing();
-  const bool moves = session_.is_going() || session_.is_moving() || plays || was_moving_;
+  const bool moves =
+      session_.is_going() || session_.is_moving() || plays || was_moving_ || objects_.is_moving();
   const bool is_inside = guide_.inside() != nullptr;
   const bool busy = is_inside ? !guide_.inside()->is_at_rest() || frames_due_ > 0
                               : moves || !maker_->is_idle() || frames_due_ > 0 ||
@@ -184,7 +188,7 @@ bool ExploreWindow::step(double wait_s) {
   }
   follow_caught_cursor();
   display_.show_hand(session_.mouse_use() == explore::MouseUse::kHold || flight_.holds_pose() ||
-                     drawing_.sketch().held().has_value());
+                     drawing_.sketch().held().has_value() || objects_.holds());
   const auto now = Clock::now();
   // The time of a rest does not count as motion.
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
@@ -201,13 +205,15 @@ bool ExploreWindow::step(double wait_s) {
   was_moving_ = explore::any(controls);
   if (was_moving_) welcome_.dismiss();
   session_.advance(dt_s, controls, input.look);
+  objects_.advance(dt_s, was_moving_, session_);
 
   if (const std::string text = guide_.follow(session_, view_area_); !text.empty()) show_message(text);
 
   // The next image is drawn while the last one is shown.
   const bool is_new = take_image();
   request_image();
-  if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest() || objects_.is_moving())
+    frames_due_ = std::max(frames_due_, 1);
   if (shown_devices_ && shown_devices_ != devices_.states(now_s())) frames_due_ = std::max(frames_due_, 1);
   const bool moves_image =
       lags() && now_s() >= next_moved_s_ && (!shown_view_ || !is_same_sight(*shown_view_, session_.view()));
@@ -247,6 +253,7 @@ void ExploreWindow::replace_planet(ShownPlanet next) {
 void ExploreWindow::keep_work(bool is_busy) {
   take_drawing_actions();
   keep_drawings();
+  keep_scene();
   if (!ImGui::IsAnyMouseDown()) {
     if (const std::string error = backup_.update(session_.flights().editor()); !error.empty())
       show_message(error, true);

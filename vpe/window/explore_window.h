@@ -30,6 +30,7 @@
 #include "vpe/window/hotspot_guide.h"
 #include "vpe/window/image_layout.h"
 #include "vpe/window/moved_image.h"
+#include "vpe/window/objects/objects_panel.h"
 #include "vpe/window/panels/appearance_panel.h"
 #include "vpe/window/panels/drawing_panel.h"
 #include "vpe/window/panels/file_panel.h"
@@ -102,6 +103,7 @@ struct ExploreSetup : ShownPlanet {
   std::vector<core::Place> places;      // that the search box finds
   std::string places_file;              // the same, for names over the image; empty: there is none
   bool greets = false;                  // says at the start how to move
+  explore::ModelBall model_ball;  // of objects that are edited; called on a thread; empty: they count as 1 m
   // Returns a command that draws the present view, to be copied. Empty: there is none.
   std::function<std::string(const explore::Session&)> command_line;
   int threads = 0;
@@ -164,7 +166,10 @@ class ExploreWindow {
   std::string drawings_message();
   // Returns the project as it is now.
   explore::Project project() const;
+  // Does the same for a scene of objects.
+  std::string objects_message() { return objects_.exit_message(); }
   DrawingPanel& drawing() { return drawing_; }
+  ObjectsPanel& objects() { return objects_; }
   const MeasurePanel& measure() const { return measure_; }
   // Runs one iteration of the event loop: events, devices, panels, an image if one is due. Waits for events for
   // at most `wait_s` seconds if there is nothing to do. Returns false if the window was closed.
@@ -294,6 +299,7 @@ class ExploreWindow {
   std::string project_text() const;
   void save_project();
   void keep_drawings();
+  void keep_scene();
   void restore_drawings(const std::filesystem::path& copy);
   std::string act_on_project_bookmark(const explore::Action& action);
   double now_s() const;
@@ -318,6 +324,7 @@ class ExploreWindow {
   double rests_since_s_ = 0;
   bool is_tidy_ = false;  // freed memory was returned since the last motion
   Welcome welcome_;
+  ObjectsPanel objects_;
   DrawingPanel drawing_;
   explore::BookmarkList project_bookmarks_;
   std::filesystem::path project_file_;  // empty: no project is open

@@ -21,7 +21,9 @@ constexpr const char* kMouseHelp[][2] = {
     {"double click", "fly there"},
     {"with a tool of Draw",
      "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
-    {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project"},
+    {"in the panel Objects",
+     "click: select; drag: move; with Place, a click or V: place; Delete: delete; while following, drag: look from elsewhere; Esc: end"},
+    {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project, or in Objects the scene"},
     {"on the map",
      "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "
      "region of interest"},

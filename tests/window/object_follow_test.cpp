@@ -1,0 +1,91 @@
+// Tests views of objects in the window, the camera that follows one, and the time of a scene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "tests/window/objects_fixture.h"
+#include "vpe/explore/objects/item_balls.h"
+
+namespace vpe::window {
+namespace {
+
+using ObjectFollowTest = ObjectsPanelTest;
+
+TEST_F(ObjectFollowTest, TheCameraGoesToAnObjectAndFollowsOneThatMoves) {
+  open_above(file());
+  const double radius_m = window_->session().ground().radius_m;
+  // Returns the camera's distance from the driver, and how far it looks past its middle, radians.
+  const auto sight = [&] {
+    const auto balls = explore::balls_of(*item("Driver"), editor().models(), app::model_ball,
+                                         window_->session().ground(), window_->objects().time_s());
+    const mars::CameraPose camera = mars::to_camera(window_->session().pose(), radius_m);
+    const glm::dvec3 to = balls.at(0).centre_m - camera.position_m;
+    return std::pair{glm::length(to), glm::length(glm::normalize(to) - camera.axes.forward)};
+  };
+  click("object Driver");
+  click("Go to##object");
+  settle();
+  EXPECT_LT(sight().second, 1e-6);
+  const double there_m = sight().first;
+  EXPECT_NEAR(there_m, 5 * 20000 * std::sqrt(3), 20000);
+  click("Follow");
+  iterate(3);
+  EXPECT_EQ(window_->objects().followed(), item("Driver")->id);
+  click("Play##objects");
+  const double lon_deg = window_->session().pose().lon_deg;
+  for (int n = 0; n < 500 && window_->objects().time_s() < 1; ++n) iterate(1);
+  EXPECT_GE(window_->objects().time_s(), 1);
+  EXPECT_GT(window_->session().pose().lon_deg, lon_deg + 0.03);
+  EXPECT_LT(sight().second, 1e-6);
+  EXPECT_NEAR(sight().first, there_m, 1);
+  // The image is of that time.
+  for (int n = 0; n < 100; ++n) iterate(1);
+  EXPECT_GT(window_->drawn()->request.flight_time_s, 0.5);
+  click("Pause##objects");
+  settle();
+  // A drag turns about it, and the wheel changes the distance.
+  const double yaw_deg = window_->session().pose().yaw_deg;
+  drag({700, 300}, {60, 0});
+  EXPECT_GT(std::remainder(window_->session().pose().yaw_deg - yaw_deg, 360.0), 5);
+  EXPECT_LT(sight().second, 1e-6);
+  EXPECT_NEAR(sight().first, there_m, 1);
+  robot_->wheel(2);
+  iterate(5);
+  EXPECT_NEAR(sight().first, there_m / (1.35 * 1.35), 1);
+  EXPECT_EQ(editor().undo_text(), "");
+  key("Escape");
+  EXPECT_EQ(window_->objects().followed(), 0U);
+  const mars::Pose left_at = window_->session().pose();
+  click("Play##objects");
+  iterate(30);
+  EXPECT_EQ(window_->session().pose().lon_deg, left_at.lon_deg);
+  click("Pause##objects");
+  settle();
+}
+
+TEST_F(ObjectFollowTest, AFlightGivesTheTime) {
+  open_above(file());
+  scripts::Flight flight;
+  flight.waypoints.resize(2);
+  for (scripts::Waypoint& w : flight.waypoints) {
+    w.lon_deg = 20;
+    w.lat_deg = 10;
+    w.up_m = 600'000;
+    w.pitch_deg = -90;
+  }
+  flight.waypoints[1].time_s = 60;
+  ASSERT_EQ(window_->session().flights().load(flight), "");
+  window_->session().scrub(25);
+  settle();
+  EXPECT_EQ(window_->objects().time_s(), 25);
+  EXPECT_EQ(window_->drawn()->request.flight_time_s, 25);
+  // The camera stands still, and the driver does not.
+  window_->session().scrub(50);
+  settle();
+  EXPECT_EQ(window_->drawn()->request.flight_time_s, 50);
+}
+
+}  // namespace
+}  // namespace vpe::window

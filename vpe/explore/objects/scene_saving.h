@@ -1,0 +1,20 @@
+// Saving of a scene over a file that people may have written.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "objects/files/scene_file.h"
+
+namespace vpe::explore {
+
+// Returns the name under which the former state of a file is kept: FILE~.
+std::filesystem::path kept_name(const std::filesystem::path& file);
+
+// Writes a scene to a file. A file that is there is kept as kept_name() if it holds what a scene has not, such as comments
+// and the order of its lines, or is no scene, or if `keeps_former`; an earlier kept file is replaced. Returns the kept file, or
+// nullopt. Throws what objects::write_scene_file() throws; the file is unchanged then.
+std::optional<std::filesystem::path> save_scene(const objects::SceneFile& scene,
+                                                const std::filesystem::path& file, bool keeps_former);
+
+}  // namespace vpe::explore
