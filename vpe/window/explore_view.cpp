@@ -95,6 +95,8 @@ void ExploreWindow::request_image() {
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;
   request.flight_time_s = objects_.time_s();
+  if (const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr)
+    request.draw.tracks = flight->tracks();
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));
