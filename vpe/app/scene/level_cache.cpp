@@ -19,7 +19,7 @@ namespace vpe::app {
 namespace {
 
 // Another number for levels that are made in another way.
-constexpr std::array<char, 8> kLevelFileMark{'V', 'P', 'E', 'L', 'V', 'L', '0', '1'};
+constexpr std::array<char, 8> kLevelFileMark{'V', 'P', 'E', 'L', 'V', 'L', '0', '2'};
 constexpr std::uintmax_t kMostLevelFileBytes = std::uintmax_t{4} << 30;
 constexpr std::size_t kMostLevels = 32;
 
