@@ -14,10 +14,9 @@ LevelRule level_rule(const vpe::core::DrawRequest& request, bool exact) {
   rule.stretch = vpe::core::corner_stretch(request.view);
   const vpe::core::SettingsValues& settings = request.settings;
   // A disc in place of the shape is off by half of its size.
-  const double within_tolerance = std::max(kLeastDiameter_px, 2 * settings.lod_tolerance_px);
-  rule.least_ray_px = settings.smooth_edges || settings.samples > 1
-                          ? std::min(kSmoothRayDiameter_px, within_tolerance)
-                          : kHardRayDiameter_px;
+  const bool is_smooth = settings.smooth_edges || settings.samples > 1;
+  rule.least_ray_px =
+      std::min(is_smooth ? kSmoothRayDiameter_px : kHardRayDiameter_px, 2 * settings.lod_tolerance_px);
   if (!exact) rule.tolerance_px = request.settings.lod_tolerance_px * request.coarsening;
   return rule;
 }

@@ -24,7 +24,8 @@ struct ComposedObjects {
   std::int64_t pixels = 0;   // that show an object
   std::int64_t shaded = 0;   // pixels of ground in the shadow of one
   std::int64_t objects = 0;  // different ones
-  // Hold the largest distance between a drawn level and its model, and the same in the image, at its middle.
+  // Hold the largest distance between a drawn level and its model, and the same in the image, at its middle. Objects count
+  // that may show, also if none of their pixels does.
   double geometric_error_m = 0;
   double screen_space_error_px = 0;
 };

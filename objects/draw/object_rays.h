@@ -27,10 +27,12 @@ struct LevelRule {
   double least_ray_px = 1.5;
 };
 
-// Gives the size, across, below which an object is not drawn. From there to kFullDiameter_px it fades in.
+// Gives the size, across, below which an object is not drawn. There it begins with half of its opacity, and has all of it from
+// kFullDiameter_px on.
 inline constexpr double kLeastDiameter_px = 0.5;
 inline constexpr double kFullDiameter_px = 1.0;
-// Give the sizes from which on rays meet an object: with several rays in each pixel at edges, and with one.
+// Give the sizes from which on rays meet an object: with several rays in each pixel at edges, and with one. With a tolerance
+// of less than half of that: from twice the tolerance on.
 inline constexpr double kSmoothRayDiameter_px = 1.5;
 inline constexpr double kHardRayDiameter_px = 3;
 

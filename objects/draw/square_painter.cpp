@@ -1,7 +1,6 @@
 #include "objects/draw/square_painter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,27 +11,8 @@ namespace {
 
 constexpr int kPart_px = 8;
 constexpr int kGroup_px = 32;
-// Up to this size objects are smoothed in all pixels beside them: rays of pixels' centres may miss them, or parts.
-constexpr double kMostSmall_px = 12;
 // Difference of light between pixels beside each other from which on the edge of a shadow is smoothed.
 constexpr float kShadowEdge = 0.05F;
-
-// Eight places of which no two share a row or a column of sixteenths.
-constexpr std::array<glm::dvec2, 8> kOffsets{{{0.0625, -0.1875},
-                                              {-0.0625, 0.1875},
-                                              {0.3125, 0.0625},
-                                              {-0.1875, -0.3125},
-                                              {-0.3125, 0.3125},
-                                              {-0.4375, -0.0625},
-                                              {0.1875, 0.4375},
-                                              {0.4375, -0.4375}}};
-
-vpe::base::Rgb to_rgb(const glm::dvec3& c) {
-  const auto byte = [](double x) { return static_cast<std::uint8_t>(std::lround(std::clamp(x, 0.0, 255.0))); };
-  return {byte(c.x), byte(c.y), byte(c.z)};
-}
-
-glm::dvec3 to_dvec3(const vpe::base::Rgb& c) { return {c.r, c.g, c.b}; }
 
 // Returns a ball around what rays of a cone meet between two ranges.
 SceneBall ball_between(const glm::dvec3& camera_m, const ViewCone& cone, double near_m, double far_m) {
@@ -97,7 +77,7 @@ SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const
     if (o.near_m > until_m) break;
     if (!o.by_rays || !meets(cone, view_.camera.position_m, o.around.centre_m, o.around.radius_m)) continue;
     part.near_to_far.push_back(n);
-    if (image_.samples == 1 || o.diameter_px > kMostSmall_px) continue;
+    if (image_.samples == 1 || o.diameter_px > most_small_px(o)) continue;
     const vpe::core::Projected at = vpe::core::project(view_, o.around.centre_m);
     if (!at.behind) part.small.push_back({at.xy, 0.5 * o.diameter_px + 0.75});
   }
@@ -126,10 +106,10 @@ glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
     std::uint32_t object;
     glm::dvec4 over;
   };
-  std::array<ColouredObject, kOffsets.size()> known;
+  std::array<ColouredObject, kEdgeOffsets.size()> known;
   std::size_t count = 0;
   glm::dvec4 sum(0);
-  for (const glm::dvec2& offset : kOffsets) {
+  for (const glm::dvec2& offset : kEdgeOffsets) {
     const ObjectRay ray = ray_of(x, y, offset);
     nearest_object(near_to_far_, part.near_to_far, ray, ground_.beside(x, y, offset), image_.pixel_rad,
                    scratch_);
@@ -144,7 +124,7 @@ glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
     if (at == end) *at = {scratch_.front.object, shader_->colour(ray, scratch_).over}, ++count;
     sum += at->over;
   }
-  return sum / static_cast<double>(kOffsets.size());
+  return sum / static_cast<double>(kEdgeOffsets.size());
 }
 
 double SquarePainter::light_sample(int x, int y, const glm::dvec2& offset) const {
@@ -228,8 +208,8 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
   if (is_edge && !part.near_to_far.empty()) object.over = smooth_sample(part, x, y);
   if (is_shadow_edge && part.may_be_shaded) {
     light = 0;
-    for (const glm::dvec2& offset : kOffsets)
-      light += light_sample(x, y, offset) / static_cast<double>(kOffsets.size());
+    for (const glm::dvec2& offset : kEdgeOffsets)
+      light += light_sample(x, y, offset) / static_cast<double>(kEdgeOffsets.size());
   }
   const std::size_t pixel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) + static_cast<std::size_t>(x);
@@ -253,47 +233,6 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
     frame.range_m[pixel] = static_cast<float>(here.object.range_m);
 }
 
-// An object covers its share of the four pixels around its middle, which sum to its size wherever it lies.
-void SquarePainter::paint_small(const Seen& seen, vpe::core::Frame& frame) {
-  for (auto o = near_to_far_.rbegin(); o != near_to_far_.rend(); ++o) {
-    if (o->by_rays) continue;
-    const SceneBall& ball = o->around;
-    const vpe::core::Projected at = vpe::core::project(view_, ball.centre_m);
-    if (at.behind) continue;
-    const glm::dvec3 to = ball.centre_m - view_.camera.position_m;
-    const double range_m = glm::length(to);
-    const double area_m2 =
-        o->model->mean_silhouette_m2() * static_cast<double>(o->scale) * static_cast<double>(o->scale);
-    const double fade = glm::smoothstep(kLeastDiameter_px, kFullDiameter_px, o->diameter_px);
-    const double covered = fade * o->model->mean_opacity() * area_m2 / (range_m * range_m) /
-                           pixel_solid_angle(view_, to / range_m);
-    const glm::dvec2 place = at.xy - glm::dvec2(drawn_part_.x, drawn_part_.y) - 0.5;
-    const glm::dvec2 corner = glm::floor(place);
-    const glm::dvec2 beside = place - corner;
-    const glm::dvec3 colour = shader_->mean_colour(*o);
-    bool shows = false;
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 2; ++i) {
-        const int x = static_cast<int>(corner.x) + i;
-        const int y = static_cast<int>(corner.y) + j;
-        if (x < square_.x0 || x >= square_.x1 || y < square_.y0 || y >= square_.y1 || !is_wanted(x, y))
-          continue;
-        const SeenPixel* here = seen(x, y);
-        const double front_m = std::min(static_cast<double>(ground_.at(x, y)), here->object.range_m);
-        if (range_m > front_m) continue;
-        const double weight = (i == 0 ? 1 - beside.x : beside.x) * (j == 0 ? 1 - beside.y : beside.y);
-        const double share = std::min(1.0, covered * weight);
-        vpe::base::Rgb& pixel =
-            frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
-                         static_cast<std::size_t>(x)];
-        pixel = to_rgb(glm::mix(to_dvec3(pixel), colour, share));
-        shows = true;
-      }
-    }
-    if (shows) drawn_.instances.push_back(o->instance);
-  }
-}
-
 void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
   for (const SubSquare& part : parts_) {
     for (int y = part.square.y0; y < part.square.y1; ++y) {
@@ -302,15 +241,25 @@ void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
       }
     }
   }
-  if (!frame.colour.empty()) paint_small(seen, frame);
+  if (!frame.colour.empty()) {
+    find_thin();
+    paint_small(seen, frame);
+  }
   for (const SeenPixel& pixel : seen_) {
     if (pixel.front != 0 && (drawn_.instances.empty() || drawn_.instances.back() != pixel.front - 1))
       drawn_.instances.push_back(pixel.front - 1);
   }
   std::sort(drawn_.instances.begin(), drawn_.instances.end());
   drawn_.instances.erase(std::unique(drawn_.instances.begin(), drawn_.instances.end()), drawn_.instances.end());
-  for (const PlacedObject& o : near_to_far_) {
-    if (!std::binary_search(drawn_.instances.begin(), drawn_.instances.end(), o.instance)) continue;
+  // The image may lack an object because of the error of its level, so that all count that may show.
+  std::vector<std::uint8_t> may_show(near_to_far_.size(), 0);
+  for (const SubSquare& part : parts_) {
+    for (const std::uint32_t n : part.near_to_far) may_show[n] = 1;
+  }
+  for (std::uint32_t n = 0; n < near_to_far_.size(); ++n) {
+    const PlacedObject& o = near_to_far_[n];
+    const bool is_drawn = std::binary_search(drawn_.instances.begin(), drawn_.instances.end(), o.instance);
+    if (!is_drawn && may_show[n] == 0) continue;
     const double geometric_error_m = o.model->level_error_m(o.level_index) * static_cast<double>(o.scale);
     drawn_.counts.geometric_error_m = std::max(drawn_.counts.geometric_error_m, geometric_error_m);
     if (!o.by_rays) {

@@ -1,6 +1,9 @@
 // Draws the objects of one square of pixels. Internal to objects/draw.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -11,6 +14,26 @@
 namespace objects {
 
 inline constexpr int kSquare_px = 64;
+// Returns the size up to which an object is smoothed in all pixels beside it, as rays of pixels' centres may miss it or
+// parts of it: the larger, the less its silhouette fills its ball, 12 to 64 pixels.
+double most_small_px(const PlacedObject& object);
+
+// Gives the places of a pixel, from its middle, at which edges are cast: no two share a row or a column of sixteenths.
+inline constexpr std::array<glm::dvec2, 8> kEdgeOffsets{{{0.0625, -0.1875},
+                                                         {-0.0625, 0.1875},
+                                                         {0.3125, 0.0625},
+                                                         {-0.1875, -0.3125},
+                                                         {-0.3125, 0.3125},
+                                                         {-0.4375, -0.0625},
+                                                         {0.1875, 0.4375},
+                                                         {0.4375, -0.4375}}};
+
+// Return a colour in bytes, rounded, and the reverse.
+inline vpe::base::Rgb to_rgb(const glm::dvec3& c) {
+  const auto byte = [](double x) { return static_cast<std::uint8_t>(std::lround(std::clamp(x, 0.0, 255.0))); };
+  return {byte(c.x), byte(c.y), byte(c.z)};
+}
+inline glm::dvec3 to_dvec3(const vpe::base::Rgb& c) { return {c.r, c.g, c.b}; }
 
 // Holds what the first step found at a pixel.
 struct SeenPixel {
@@ -79,6 +102,15 @@ class SquarePainter {
   void see_pixel(const SubSquare& part, int x, int y);
   void paint_pixel(const SubSquare& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
   void paint_small(const Seen& seen, vpe::core::Frame& frame);
+  bool paint_by_area(const PlacedObject& object, const Seen& seen, vpe::core::Frame& frame);
+  bool paint_thin(std::uint32_t object, const Seen& seen, vpe::core::Frame& frame);
+  void find_thin();
+  bool is_met(std::uint32_t object);
+  // Return whether rays of the image's pixels meet an object, whatever hides it there; in one pixel, or in any one, if
+  // wanted only where the ray of its middle does, too.
+  bool is_met_at(std::uint32_t object, int x, int y, std::span<const glm::dvec2> offsets);
+  bool is_met(std::uint32_t object, std::span<const glm::dvec2> offsets, bool needs_middle);
+  PixelSquare pixels_around(const PlacedObject& object) const;
 
   Image image_;
   const vpe::core::View& view_;
@@ -88,6 +120,7 @@ class SquarePainter {
   GroundRanges ground_;
   std::vector<PlacedObject> near_to_far_;
   bool may_be_shaded_ = false;
+  ObjectNumbers thin_;  // objects that pass between all rays of the image, ascending
   std::optional<ObjectShader> shader_;
   std::vector<SeenPixel> seen_;
   std::vector<SubSquare> parts_;

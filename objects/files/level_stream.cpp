@@ -14,7 +14,7 @@ namespace objects {
 namespace {
 
 // Another number for levels that are made in another way: kept ones are then made anew.
-constexpr std::array<char, 8> kLevelMark{'V', 'P', 'E', 'L', 'V', 'L', '0', '2'};
+constexpr std::array<char, 8> kLevelMark{'V', 'P', 'E', 'L', 'V', 'L', '0', '3'};
 
 template <class T>
 T take_value(std::span<const std::uint8_t>& bytes) {

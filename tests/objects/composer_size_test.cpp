@@ -53,7 +53,7 @@ TEST(Composer, NothingVanishesAboveHalfAPixel) {
     if (diameter_px < 0.49) {
       EXPECT_EQ(sum, 0);
     }
-    if (diameter_px > 0.75) {
+    if (diameter_px >= kLeastDiameter_px) {
       EXPECT_GT(sum, 0) << diameter_px;
     }
     EXPECT_LT(std::abs(sum - before), 0.5) << diameter_px;  // of a pixel: no jump
@@ -121,15 +121,33 @@ TEST(Composer, LevelsKeepToTheTolerance) {
   }
 }
 
+// Beside the image's border a coarse level may not show where the model would.
+TEST(Composer, ObjectsThatMayShowCountInTheError) {
+  core::DrawRequest r = request_at();
+  r.settings.lod_tolerance_px = 2;
+  const auto model = std::make_shared<const Model>("ball", make_levels(make_ellipsoid({1, 1, 1}, 80)));
+  // Its limb is a third of a pixel beside the border.
+  const double f = core::focal_px(r.view);
+  const double limb_px = f * std::tan(std::atan((100 + 0.3) / f) + std::asin(1.0 / 30));
+  Instance i = instance_before(r, {0, 0, 30});
+  i.position_m = r.view.camera.position_m + 30.0 * core::pixel_ray(r.view, 100 - limb_px, 80);
+  core::Frame frame = paper_frame(r);
+  const ComposedObjects drawn = draw(Scene({model}, {i}), r, frame);
+  EXPECT_EQ(drawn.objects, 0);
+  EXPECT_GT(drawn.geometric_error_m, 0);
+  EXPECT_GT(drawn.screen_space_error_px, 0);
+}
+
 TEST(Composer, ADiscTakesTheShapesPlaceOnlyWithinTheTolerance) {
   core::DrawRequest r = request_at();
-  r.settings.smooth_edges = true;
-  for (const double tolerance : {0.3, 0.5, 1.0, 4.0}) {
-    r.settings.lod_tolerance_px = tolerance;
-    EXPECT_LE(0.5 * level_rule(r, false).least_ray_px, tolerance);
-    EXPECT_LE(level_rule(r, false).least_ray_px, kSmoothRayDiameter_px);
+  for (const bool is_smooth : {true, false}) {
+    r.settings.smooth_edges = is_smooth;
+    for (const double tolerance : {0.1, 0.3, 0.5, 1.0, 4.0}) {
+      r.settings.lod_tolerance_px = tolerance;
+      EXPECT_LE(0.5 * level_rule(r, false).least_ray_px, tolerance);
+      EXPECT_LE(level_rule(r, false).least_ray_px, is_smooth ? kSmoothRayDiameter_px : kHardRayDiameter_px);
+    }
   }
-  r.settings.smooth_edges = false;
   EXPECT_EQ(level_rule(r, false).least_ray_px, kHardRayDiameter_px);
   EXPECT_EQ(level_rule(r, true).tolerance_px, 0);
 }

@@ -13,6 +13,7 @@
 
 #include "objects/levels/decimation.h"
 #include "objects/levels/manifold.h"
+#include "objects/model/hausdorff.h"
 #include "objects/model/shapes.h"
 #include "objects/model/weld.h"
 #include "tests/objects/surface_points.h"
@@ -44,6 +45,12 @@ void expect_sound(const Mesh& mesh, const std::vector<MeshLevel>& levels, std::s
       EXPECT_GE(levels[n].geometric_error_m, farthest_sample_m(mesh, level, samples, kLevelsSeed));
       EXPECT_GE(levels[n].geometric_error_m, farthest_sample_m(level, mesh, samples, kLevelsSeed));
       EXPECT_LE(levels[n].geometric_error_m, bounding_ball(mesh).radius_m);
+      if (n > 1) {
+        EXPECT_GE(levels[n].geometric_error_m,
+                  farthest_sample_m(levels[n - 1].mesh, level, samples, kLevelsSeed));
+        EXPECT_GE(levels[n].geometric_error_m,
+                  farthest_sample_m(level, levels[n - 1].mesh, samples, kLevelsSeed));
+      }
     }
     level.textures = mesh.textures;
     EXPECT_EQ(check(level), "");
@@ -352,9 +359,64 @@ TEST(MeshLevels, SeparateShellsStay) {
     append(mesh, make_rock(static_cast<std::uint32_t>(n), 2),
            glm::translate(glm::mat4(1), glm::vec3(1.5F * static_cast<float>(n), 0, 0)), {});
   const std::vector<MeshLevel> levels = sound_levels(mesh);
-  ASSERT_GE(levels.size(), 3U);
-  EXPECT_GE(levels.back().mesh.triangles.size(), 32U);
-  EXPECT_LT(levels.back().geometric_error_m, 1);
+  ASSERT_GE(levels.size(), 4U);
+  // Up to half of their size, as the error says.
+  for (const MeshLevel& level : levels) {
+    if (level.geometric_error_m > 0.5) continue;
+    std::map<int, int> triangles;
+    for (const glm::uvec3& t : level.mesh.triangles)
+      ++triangles[static_cast<int>(std::lround(level.mesh.positions_m[t.x].x / 1.5F))];
+    EXPECT_EQ(triangles.size(), 8U);
+  }
+  EXPECT_LE(levels[3].mesh.triangles.size(), 50U);
+  EXPECT_LT(levels[3].geometric_error_m, 0.5);
+}
+
+// A body with bolts, rails, wheels with treads, and a mast.
+Mesh make_machine() {
+  Mesh mesh;
+  const auto add = [&](const Mesh& part, float x, float y, float z, Rgba colour) {
+    append(mesh, part, glm::translate(glm::mat4(1), {x, y, z}), colour);
+  };
+  add(make_box({2, 3, 0.6F}), 0, 0, 0.6F, {200, 200, 200, 255});
+  for (int n = 0; n < 120; ++n)
+    add(make_box({0.03F, 0.03F, 0.02F}), -0.9F + 0.15F * static_cast<float>(n % 12),
+        -1.35F + 0.3F * static_cast<float>(n / 12), 1.2F, {60, 60, 60, 255});
+  for (const float side : {-1.0F, 1.0F}) {
+    for (int n = 0; n < 3; ++n)
+      add(make_ellipsoid({0.15F, 0.4F, 0.4F}, 16), 1.2F * side, -1.1F + 1.1F * static_cast<float>(n), 0.4F,
+          {30, 30, 30, 255});
+    add(make_box({0.02F, 2.8F, 0.02F}), 1.01F * side, 0, 1.1F, {90, 90, 90, 255});
+  }
+  add(make_cylinder(0.04F, 1.2F, 16), 0, 1.2F, 1.2F, {220, 220, 220, 255});
+  return mesh;
+}
+
+// Decimation alone cannot leave any of the parts out.
+TEST(MeshLevels, ModelsOfManySmallPartsGetCoarse) {
+  const Mesh machine = make_machine();
+  const std::vector<MeshLevel> levels = sound_levels(machine);
+  ASSERT_GE(levels.size(), 4U);
+  EXPECT_LE(levels.back().mesh.triangles.size(), 30U);
+  for (std::size_t n = 1; n < 3; ++n) {
+    Decimation decimation(machine);
+    decimation.reduce_to(levels[n].mesh.triangles.size());
+    EXPECT_LT(levels[n].geometric_error_m, 0.5 * hausdorff_bound(machine, decimation.mesh(), 1e-3)) << n;
+    EXPECT_LE(static_cast<double>(levels[n].mesh.triangles.size()),
+              0.32 * static_cast<double>(levels[n - 1].mesh.triangles.size()));
+  }
+  // The bolts are the first to go.
+  EXPECT_LT(levels[1].geometric_error_m, 0.03);
+  // The body keeps its colour to the last.
+  double body = 0;
+  double all = 0;
+  const Mesh& last = levels.back().mesh;
+  for (std::size_t t = 0; t < last.triangles.size(); ++t) {
+    const double area = glm::length(area_normal(last, t));
+    all += area;
+    if (last.material_table[last.materials[t]].colour.r == 200) body += area;
+  }
+  EXPECT_GT(body, 0.5 * all);
 }
 
 TEST(MeshLevels, SmallMeshesHaveOneLevel) {

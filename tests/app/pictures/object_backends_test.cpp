@@ -110,7 +110,7 @@ class ObjectBackends : public test_support::GlTest {
       const core::DrawResult b = triangles_->draw(request);
       ASSERT_TRUE(a.certificate.objects && b.certificate.objects);
       EXPECT_EQ(a.certificate.objects->geometric_error_m, 0);
-      EXPECT_LE(b.certificate.objects->screen_space_error_px, std::max(request.settings.lod_tolerance_px, 1.5));
+      EXPECT_LE(b.certificate.objects->screen_space_error_px, request.settings.lod_tolerance_px);
       EXPECT_GE(b.certificate.shift_bound_px, b.certificate.objects->screen_space_error_px);
       objects_drawn += a.certificate.objects->drawn;
       const double share =
