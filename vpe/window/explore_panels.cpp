@@ -18,6 +18,8 @@ namespace vpe::window {
 
 namespace {
 
+constexpr float kTabLetters = 0.92F;  // of the size of others, so that eight tabs fit
+
 // A slider that moved under the hand that holds it could not be held: the scale follows at the end.
 void draw_letters(double scale, WindowState& state, Widgets& widgets) {
   double letters = state.letters_slid > 0 ? state.letters_slid : scale;
@@ -170,16 +172,21 @@ void ExploreWindow::draw_tabs() {
   const auto dense = [scale] {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {scale, 3 * scale});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, {scale, 2 * scale});
+    ImGui::SetWindowFontScale(kTabLetters);
+  };
+  const auto usual = [] {
+    ImGui::SetWindowFontScale(1);
+    ImGui::PopStyleVar(2);
   };
   const auto tab = [&](const char* label) {
     dense();
     const bool is_open = widgets_.tab(label);
-    ImGui::PopStyleVar(2);
+    usual();
     return is_open;
   };
   dense();
   const bool is_shown = ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown);
-  ImGui::PopStyleVar(2);
+  usual();
   if (!is_shown) return;
   if (tab("View")) {
     begin_part("control");

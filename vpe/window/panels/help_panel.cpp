@@ -22,7 +22,7 @@ constexpr const char* kMouseHelp[][2] = {
     {"with a tool of Draw",
      "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
     {"in the panel Objects",
-     "click: select; drag: move; with Place, a click or V: place; Delete: delete; while following, drag: look from elsewhere; Esc: end"},
+     "click: select; drag: move; with Place, click or V: place; Delete; while following, drag: turn; Esc: end"},
     {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project, or in Objects the scene"},
     {"on the map",
      "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "
