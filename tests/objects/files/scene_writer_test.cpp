@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "objects/files/scene_limits.h"
-#include "tests/objects/scene_texts.h"
+#include "tests/objects/files/scene_texts.h"
 #include "tests/support/support.h"
 #include "vpe/base/file.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "objects/sticks/stick_model.h"
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 
 namespace objects {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 #include "vpe/base/file.h"
 
 namespace objects {

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "tests/objects/model_makers.h"
+#include "tests/objects/files/model_makers.h"
 #include "tests/support/support.h"
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"

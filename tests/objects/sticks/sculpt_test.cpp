@@ -9,7 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 #include "vpe/base/file.h"
 
 namespace objects {

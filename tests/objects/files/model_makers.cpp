@@ -1,4 +1,4 @@
-#include "tests/objects/model_makers.h"
+#include "tests/objects/files/model_makers.h"
 
 #include <zlib.h>
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "objects/sticks/halve_voxels.h"
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 
 namespace objects {
 namespace {

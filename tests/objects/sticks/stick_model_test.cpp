@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 
 namespace objects {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "objects/files/scene_file.h"
-#include "tests/objects/scene_texts.h"
+#include "tests/objects/files/scene_texts.h"
 #include "tests/support/support.h"
 #include "vpe/base/file.h"
 

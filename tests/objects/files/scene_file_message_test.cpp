@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "objects/files/scene_file.h"
-#include "tests/objects/scene_texts.h"
+#include "tests/objects/files/scene_texts.h"
 
 namespace objects {
 namespace {

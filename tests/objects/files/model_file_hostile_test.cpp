@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "objects/files/model_file.h"
-#include "tests/objects/model_makers.h"
+#include "tests/objects/files/model_makers.h"
 #include "tests/support/support.h"
 #include "vpe/base/file.h"
 

@@ -9,7 +9,7 @@
 
 #include "objects/model/shapes.h"
 #include "objects/sticks/triangle_voxels.h"
-#include "tests/objects/stick_shapes.h"
+#include "tests/objects/sticks/stick_shapes.h"
 
 namespace objects {
 namespace {
