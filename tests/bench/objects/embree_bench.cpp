@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "objects/draw/pixel_square.h"
-#include "objects/model/mesh_levels.h"
+#include "objects/levels/mesh_levels.h"
 #include "objects/model/shapes.h"
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/voxelise.h"
