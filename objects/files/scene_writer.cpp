@@ -22,13 +22,13 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 3> kUpWords{"auto", "y", "z"};
 
 // Returns the number as TOML reads it back to the bit. Whole numbers have no point.
-std::string number_text(double value) {
+std::string toml_number(double value) {
   const std::string text = vpe::base::format_number(value);
   return text == "-0" ? "-0.0" : text;  // a whole number has no sign of zero
 }
 
 // Returns the text in quotation marks. `problem` is what the readers say of it.
-std::string quoted(const std::string& text, const std::string& problem) {
+std::string in_quotes(const std::string& text, const std::string& problem) {
   if (!problem.empty()) throw std::invalid_argument(vpe::base::quote_text(text) + ": " + problem);
   // Three apostrophes would be taken for a text of several lines.
   const bool has_three = text.find("'''") != std::string::npos;
@@ -50,7 +50,7 @@ std::string quoted(const std::string& text, const std::string& problem) {
   return out;
 }
 
-std::string name_text(const std::string& name) { return quoted(name, problem_of_name(name)); }
+std::string name_in_quotes(const std::string& name) { return in_quotes(name, problem_of_name(name)); }
 
 // Returns the path of a model in a scene file; model_path() returns the model for it.
 std::string path_text(const fs::path& model, const fs::path& scene_file) {
@@ -62,11 +62,11 @@ std::string path_text(const fs::path& model, const fs::path& scene_file) {
     // Not so where the folder begins with "..".
     if (!relative.empty() && model_path(scene_file, relative.string()) == whole) text = relative;
   }
-  return quoted(text.string(), problem_of_path(text.string()));
+  return in_quotes(text.string(), problem_of_path(text.string()));
 }
 
 std::string place_list(const mars::LonLat& place) {
-  return number_text(place.lon_deg) + ", " + number_text(place.lat_deg);
+  return toml_number(place.lon_deg) + ", " + toml_number(place.lat_deg);
 }
 
 // Returns true for places of one object that differ in nothing but place and heading.
@@ -81,7 +81,7 @@ class SceneTomlWriter {
   SceneTomlWriter(const SceneFile& scene, const fs::path& file) : file_(file) {
     const auto& [path, models, objects, scatters, paths] = scene;
     text_ = "version = 1\n";
-    for (const ModelEntry& model : models) model_names_.push_back(name_text(model.name));
+    for (const ModelEntry& model : models) model_names_.push_back(name_in_quotes(model.name));
     for (const ModelEntry& model : models) write_model(model);
     for (const ObjectEntry& object : objects) write_object(object);
     for (const PathEntry& entry : paths) write_path(entry);
@@ -94,10 +94,10 @@ class SceneTomlWriter {
   void begin(std::string_view table) { text_ += "\n[[" + std::string(table) + "]]\n"; }
   void add(std::string_view key, const std::string& value) { text_ += std::string(key) + " = " + value + "\n"; }
   void add_number(std::string_view key, double value, double usual) {
-    if (value != usual || std::signbit(value) != std::signbit(usual)) add(key, number_text(value));
+    if (value != usual || std::signbit(value) != std::signbit(usual)) add(key, toml_number(value));
   }
   void add_name(const std::string& name) {
-    if (!name.empty()) add("name", name_text(name));
+    if (!name.empty()) add("name", name_in_quotes(name));
   }
   const std::string& model_name(std::size_t model) const {
     if (model >= model_names_.size()) throw std::invalid_argument("a scene names a model that is not there");
@@ -107,7 +107,7 @@ class SceneTomlWriter {
   void write_model(const ModelEntry& model) {
     const auto& [name, file, unit_m, up] = model;
     begin("model");
-    add("name", name_text(name));
+    add("name", name_in_quotes(name));
     add("file", path_text(file, file_));
     add_number("unit_m", unit_m, 1);
     if (up != UpAxis::kAuto) add("up", "\"" + std::string(kUpWords[static_cast<std::size_t>(up)]) + "\"");
@@ -131,16 +131,16 @@ class SceneTomlWriter {
     const auto& [place, height_kind, height_m, heading_deg, pitch_deg, roll_deg, follows_slope, scale] =
         places[first];
     if (end - first == 1) {
-      add("lon", number_text(place.lon_deg));
-      add("lat", number_text(place.lat_deg));
+      add("lon", toml_number(place.lon_deg));
+      add("lat", toml_number(place.lat_deg));
     } else {
       text_ += "at = [\n";
       for (std::size_t n = first; n < end; ++n)
-        text_ += "  [" + place_list(places[n].place) + ", " + number_text(places[n].heading_deg) + "],\n";
+        text_ += "  [" + place_list(places[n].place) + ", " + toml_number(places[n].heading_deg) + "],\n";
       text_ += "]\n";
     }
     if (height_kind == HeightKind::kAltitude)
-      add("altitude", number_text(height_m));
+      add("altitude", toml_number(height_m));
     else
       add_number("height", height_m, 0);
     if (end - first == 1) add_number("heading", heading_deg, 0);
@@ -164,13 +164,13 @@ class SceneTomlWriter {
     add_number("track_m", track_m, 0);
     text_ += "points = [\n";
     for (const auto& [time_s, place, heading_deg, height_m] : points) {
-      text_ += "  [" + number_text(time_s) + ", " + place_list(place);
+      text_ += "  [" + toml_number(time_s) + ", " + place_list(place);
       if (heading_deg) {
-        text_ += ", " + number_text(*heading_deg);
+        text_ += ", " + toml_number(*heading_deg);
       } else if (height_m != 0) {
         text_ += ", \"way\"";
       }
-      if (height_m != 0) text_ += ", " + number_text(height_m);
+      if (height_m != 0) text_ += ", " + toml_number(height_m);
       text_ += "],\n";
     }
     text_ += "]\n";
@@ -190,13 +190,13 @@ class SceneTomlWriter {
     add("seed", std::to_string(seed));
     if (const auto* power = std::get_if<PowerLaw>(&distribution)) {
       const auto& [density_per_m2, exponent] = *power;
-      add("density_per_m2", number_text(density_per_m2));
-      add("exponent", number_text(exponent));
+      add("density_per_m2", toml_number(density_per_m2));
+      add("exponent", toml_number(exponent));
     } else {
-      add("rock_abundance", number_text(std::get<RockAbundance>(distribution).k));
+      add("rock_abundance", toml_number(std::get<RockAbundance>(distribution).k));
     }
-    add("diameter_m", "[" + number_text(least_diameter_m) + ", " + number_text(most_diameter_m) + "]");
-    add("buried", number_text(buried));
+    add("diameter_m", "[" + toml_number(least_diameter_m) + ", " + toml_number(most_diameter_m) + "]");
+    add("buried", toml_number(buried));
     add_align(follows_slope);
     if (tumbles) add("tumble", "true");
     if (most != 0) add("most", std::to_string(most));
