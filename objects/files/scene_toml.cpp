@@ -164,7 +164,8 @@ class SceneTomlReader {
       const toml::array& parts = parts_of(table, node, "points", 3, 5, kForm);
       PathPoint point{table.number_of(parts[0], "time", kTimeRange_s), place_of(table, parts, 1)};
       const bool is_along_way = parts.size() > 4 && parts[3].value<std::string>() == "way";
-      if (parts.size() > 3 && !is_along_way) point.heading_deg = table.number_of(parts[3], "heading", kAngleRange_deg);
+      if (parts.size() > 3 && !is_along_way)
+        point.heading_deg = table.number_of(parts[3], "heading", kAngleRange_deg);
       if (parts.size() > 4) point.height_m = table.number_of(parts[4], "height", kHeightRange_m);
       if (!path.points.empty() && point.time_s <= path.points.back().time_s)
         table.fail_expecting(parts[0], "time", "a later one than that of the point before");

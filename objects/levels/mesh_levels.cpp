@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "objects/levels/decimation.h"
-#include "objects/model/hausdorff.h"
 #include "objects/levels/level_candidates.h"
 #include "objects/levels/mesh_parts.h"
+#include "objects/model/hausdorff.h"
 #include "objects/model/normals.h"
 
 namespace objects {
