@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> files_of(const SceneFile& scene) {
   std::vector<std::filesystem::path> files{scene.path};
   std::set<std::filesystem::path> known{scene.path};
   for (const ModelEntry& model : scene.models) {
-    if (known.insert(model.file).second) files.push_back(model.file);
+    if (!model.formula && known.insert(model.file).second) files.push_back(model.file);
   }
   return files;
 }

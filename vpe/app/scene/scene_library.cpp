@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "objects/files/model_file.h"
+#include "objects/files/volume_model_file.h"
 #include "objects/scene/scatter.h"
 #include "objects/sticks/stick_file.h"
 #include "vpe/app/planet/planet_argument.h"
@@ -34,7 +35,19 @@ std::filesystem::path models_folder() {
 
 }  // namespace
 
+std::shared_ptr<const objects::Model> SceneLibrary::volume(const std::string& name,
+                                                           const objects::VolumeFormula& formula) {
+  KnownVolume& known = volumes_[name];
+  if (known.model == nullptr || known.formula != formula) {
+    known.model = std::make_shared<const objects::Model>(
+        name, std::make_shared<const objects::VolumeModel>(objects::volume_by_formula(formula)));
+    known.formula = formula;
+  }
+  return known.model;
+}
+
 std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEntry& entry) {
+  if (entry.formula) return volume(entry.name, *entry.formula);
   const std::optional<base::FileStamp> stamp = base::file_stamp(entry.file);
   KnownModel& known = known_[entry.file];
   if (known.model && stamp && known.stamp == *stamp && known.unit_m == entry.unit_m && known.up == entry.up)
@@ -43,6 +56,15 @@ std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEn
     known.model = std::make_shared<const objects::Model>(
         entry.name, std::make_shared<const objects::StickModel>(objects::read_stick_file(entry.file)));
     known.stamp = stamp.value_or(base::FileStamp());
+    return known.model;
+  }
+  if (objects::is_volume_path(entry.file)) {
+    known.model = std::make_shared<const objects::Model>(
+        entry.name, std::make_shared<const objects::VolumeModel>(
+                        objects::read_volume_model(entry.file, {.unit_m = entry.unit_m, .up = entry.up})));
+    known.stamp = stamp.value_or(base::FileStamp());
+    known.unit_m = entry.unit_m;
+    known.up = entry.up;
     return known.model;
   }
   objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
