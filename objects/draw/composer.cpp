@@ -30,7 +30,13 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
   const SunGrid before_sun =
       is_lit(light.request.settings) && !frame.colour.empty() ? SunGrid(rays, light.request.sun) : SunGrid();
   const ViewRays view_rays(light.request.view);
-  SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px};
+  const bool shows_volumes = has_volumes(scene);
+  const VolumeLights volume_lights =
+      shows_volumes && !before_sun.is_empty()
+          ? VolumeLights(rays, before_sun, light, cone_of_view(light.request.view, view_rays), pool)
+          : VolumeLights();
+  SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px, nullptr};
+  if (shows_volumes) image.volume_lights = &volume_lights;
   const vpe::core::SettingsValues& settings = light.request.settings;
   if (only.empty() && (settings.samples > 1 || settings.smooth_edges)) image.samples = 8;
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "objects/draw/volume_rays.h"
 #include "objects/model/surface_sample.h"
 
 namespace objects {
@@ -133,7 +134,13 @@ PlacedObject ObjectRays::placed(std::uint32_t n) const {
   const double per_px = rule_.focal_px * rule_.stretch;
   const double geometric_error_m = rule_.tolerance_px * o.near_m / per_px / static_cast<double>(i.scale);
   o.level_index = rule_.tolerance_px > 0 ? o.model->level_within(geometric_error_m) : 0;
-  o.level = o.model->sticks() != nullptr ? nullptr : &o.model->levels()[o.level_index];
+  if (const VolumeModel* volume = o.model->volume(); volume != nullptr) {
+    const double least_m = kLeastPosts_px * o.near_m / per_px / static_cast<double>(i.scale);
+    o.level_index = std::max(o.level_index, o.model->level_within(least_m));
+    o.volume = &volume->levels()[o.level_index];
+  } else if (o.model->sticks() == nullptr) {
+    o.level = &o.model->levels()[o.level_index];
+  }
   return o;
 }
 
@@ -172,7 +179,7 @@ void nearest_object(std::span<const PlacedObject> objects, std::span<const std::
   for (const std::uint32_t n : named) {
     const PlacedObject& o = objects[n];
     if (o.near_m > end_m) break;
-    if (!o.by_rays) continue;
+    if (!o.by_rays || o.volume != nullptr) continue;
     const std::optional<LocalRay> local = enter(o, ray, end_m);
     if (!local) continue;
     if (o.level == nullptr) {
@@ -226,6 +233,10 @@ double light_through(std::span<const PlacedObject> objects, std::span<const std:
   double light = 1;
   for (const std::uint32_t n : named) {
     const PlacedObject& o = objects[n];
+    if (o.volume != nullptr) {
+      light *= volume_through(o, ray);
+      continue;
+    }
     const std::optional<LocalRay> local = enter(o, ray, std::numeric_limits<double>::infinity());
     if (!local) continue;
     if (o.level == nullptr) {

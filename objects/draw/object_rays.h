@@ -35,11 +35,15 @@ inline constexpr double kFullDiameter_px = 1.0;
 // of less than half of that: from twice the tolerance on.
 inline constexpr double kSmoothRayDiameter_px = 1.5;
 inline constexpr double kHardRayDiameter_px = 3;
+// Gives the spacing of a volume's posts below which a coarser level is taken whatever the tolerance: a pixel has one ray
+// through a volume.
+inline constexpr double kLeastPosts_px = 0.5;
 
 // Holds an instance with what rays need.
 struct PlacedObject {
   const Model* model = nullptr;
-  const Model::Level* level = nullptr;  // null: of sticks
+  const Model::Level* level = nullptr;  // of meshes, else null
+  const VolumeLevel* volume = nullptr;  // of a semi-transparent volume, else null
   std::size_t level_index = 0;
   std::uint32_t instance = 0;
   bool is_mirrored = false;
@@ -115,11 +119,12 @@ using ObjectNumbers = std::vector<std::uint32_t>;
 ObjectNumbers all_of(std::span<const PlacedObject> objects);
 
 // Finds what a ray meets before until_m among the named objects of a list that is sorted from near to far, as in_cone()
-// sorts it. footprint is the angle of a pixel, radians. `out` is overwritten.
+// sorts it. footprint is the angle of a pixel, radians. Volumes are left out (volume_rays.h). `out` is overwritten.
 void nearest_object(std::span<const PlacedObject> objects, std::span<const std::uint32_t> named,
                     const ObjectRay& ray, double until_m, double footprint, RayResult& out);
 
-// Returns the share of light that comes along a ray through the named objects: 0 behind an opaque one.
+// Returns the share of light that comes along a ray through the named objects: 0 behind an opaque one. Volumes are taken
+// one level coarser than images take them.
 double light_through(std::span<const PlacedObject> objects, std::span<const std::uint32_t> named,
                      const ObjectRay& ray);
 

@@ -15,12 +15,9 @@ using vpe::core::Mode;
 
 namespace {
 
-const glm::dvec3 kLineColour{242, 191, 140};  // as lines and dots of the ground
 // Rays to the sun leave a voxel by this many of its edges.
 constexpr double kVoxelLift = 1.5;
 constexpr double kHalfLine_px = 1;  // half of it may lie beside the object
-
-bool draws_lines(Mode mode) { return mode == Mode::kWireframe || mode == Mode::kMarkers; }
 
 // Returns the part of a ball that faces the sun, as its camera sees it, by Lambert's law.
 double mean_incidence(const glm::dvec3& to_camera, const glm::dvec3& sun) {
@@ -36,6 +33,12 @@ bool is_night(const glm::dvec3& place_m, const glm::dvec3& sun, double planet_ra
 }
 
 }  // namespace
+
+bool draws_lines(Mode mode) { return mode == Mode::kWireframe || mode == Mode::kMarkers; }
+
+double sun_above(const ImageLight& light, const SunGrid& before_sun, const glm::dvec3& place_m) {
+  return is_night(place_m, light.request.sun, light.planet_radius_m) ? 0 : before_sun.light_at(place_m);
+}
 
 bool is_lit(const vpe::core::Appearance& appearance) {
   return !draws_lines(appearance.mode) && appearance.mode != Mode::kUnlit;
@@ -66,8 +69,7 @@ ObjectShader::ObjectShader(const ObjectRays& rays, const SunGrid& before_sun,
       is_lit_(is_lit(light.request.settings)) {}
 
 double ObjectShader::sun_at(const glm::dvec3& place_m) const {
-  if (is_night(place_m, light_.request.sun, light_.planet_radius_m)) return 0;
-  const double through = before_sun_.light_at(place_m);
+  const double through = sun_above(light_, before_sun_, place_m);
   if (through <= 0 || light_.ground == nullptr) return through;
   return light_.ground->sees_sun(place_m) ? through : 0;
 }
@@ -149,16 +151,17 @@ glm::dvec4 ObjectShader::colour_of(const ObjectRay& ray, const ObjectHit& hit) c
   return {glm::min(colour, 255.0) * haze.transmitted + haze.added, surface.colour.w};
 }
 
+void ObjectShader::lay(const ObjectRay& ray, const ObjectHit& hit, ObjectColour& out) const {
+  const glm::dvec4 c = colour_of(ray, hit);
+  const double share = (1 - out.over.w) * c.w / 255;
+  out.over += glm::dvec4(glm::dvec3(c) * share, share);
+  if (out.over.w >= 0.5) out.range_m = std::min(out.range_m, hit.range_m);
+}
+
 ObjectColour ObjectShader::colour(const ObjectRay& ray, const RayResult& seen) const {
   ObjectColour out;
-  const auto add = [&](const ObjectHit& hit) {
-    const glm::dvec4 c = colour_of(ray, hit);
-    const double share = (1 - out.over.w) * c.w / 255;
-    out.over += glm::dvec4(glm::dvec3(c) * share, share);
-    if (out.over.w >= 0.5) out.range_m = std::min(out.range_m, hit.range_m);
-  };
-  for (const ObjectHit& layer : seen.layers) add(layer);
-  if (seen.has_front) add(seen.front);
+  for (const ObjectHit& layer : seen.layers) lay(ray, layer, out);
+  if (seen.has_front) lay(ray, seen.front, out);
   return out;
 }
 

@@ -28,6 +28,12 @@ Haze haze_at(const ImageLight& light, const glm::dvec3& direction, double range_
 
 // Returns whether the sun lights what an image shows.
 bool is_lit(const vpe::core::Appearance& appearance);
+// Returns whether an image shows lines or dots, in this colour.
+bool draws_lines(vpe::core::Mode mode);
+inline constexpr glm::dvec3 kLineColour{242, 191, 140};  // as lines and dots of the ground
+
+// Returns the share of the sun's light at a place, 0 where the planet's sphere hides it. Ground hides nothing.
+double sun_above(const ImageLight& light, const SunGrid& before_sun, const glm::dvec3& place_m);
 
 // Holds what objects cover of a pixel or a sample.
 struct ObjectColour {
@@ -45,6 +51,8 @@ class ObjectShader {
 
   // Returns the colour of what nearest_object() found among these objects.
   ObjectColour colour(const ObjectRay& ray, const RayResult& seen) const;
+  // Lays a surface behind what `out` has.
+  void lay(const ObjectRay& ray, const ObjectHit& hit, ObjectColour& out) const;
   // Returns the mean colour of an object, 0 to 255, as far as it is too small for rays.
   glm::dvec3 mean_colour(const PlacedObject& object) const;
 

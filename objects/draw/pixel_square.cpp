@@ -41,6 +41,13 @@ ViewCone cone_of(const vpe::core::View& view, const ViewRays& rays, const PixelS
   return cone;
 }
 
+// Round images may show all directions.
+ViewCone cone_of_view(const vpe::core::View& view, const ViewRays& rays) {
+  if (view.projection != Projection::kPerspective) return {view.camera.axes.forward, -1, 0};
+  const glm::ivec2 size = vpe::core::drawn_size(view);
+  return cone_of(view, rays, {0, 0, size.x, size.y}, 1);
+}
+
 double pixel_solid_angle(const vpe::core::View& view, const glm::dvec3& direction) {
   const double f = vpe::core::focal_px(view);
   if (view.projection == Projection::kPerspective) {

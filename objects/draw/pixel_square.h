@@ -47,6 +47,9 @@ class ViewRays {
 ViewCone cone_of(const vpe::core::View& view, const ViewRays& rays, const PixelSquare& square,
                  double margin_px);
 
+// Returns a cone that holds the rays of all pixels of the drawn part. Pure.
+ViewCone cone_of_view(const vpe::core::View& view, const ViewRays& rays);
+
 // Returns the solid angle of a pixel in a direction (unit, body-fixed) that the view shows, steradians. Pure.
 double pixel_solid_angle(const vpe::core::View& view, const glm::dvec3& direction);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "objects/draw/volume_rays.h"
 #include "objects/model/surface_sample.h"
 
 namespace objects {
@@ -15,18 +16,42 @@ std::optional<SeenObject> first_among(const std::vector<PlacedObject>& objects, 
                                       double until_m) {
   RayResult met;
   nearest_object(objects, all_of(objects), ray, until_m, 0, met);
+  std::vector<VolumeCrossing> crossings;
+  enter_volumes(objects, all_of(objects), ray, until_m, crossings);
   double through = 1;
-  for (const ObjectHit& layer : met.layers) {
-    const PlacedObject& o = objects[layer.object];
-    const float opacity =
-        o.level == nullptr
-            ? layer.opacity
-            : surface_colour(o.level->mesh, o.model->textures(), layer.triangle, layer.weights, 0).w;
-    through *= 1 - static_cast<double>(opacity) / 255;
-    if (through <= 0.5) return SeenObject{layer.range_m, o.instance};
-  }
-  if (!met.has_front) return std::nullopt;
-  return SeenObject{met.front.range_m, objects[met.front.object].instance};
+  std::optional<SeenObject> seen;
+  in_order(
+      met, crossings,
+      [&](const ObjectHit& hit) {
+        const PlacedObject& o = objects[hit.object];
+        const float opacity =
+            met.has_front && hit.range_m >= met.front.range_m ? 255
+            : o.level == nullptr
+                ? hit.opacity
+                : surface_colour(o.level->mesh, o.model->textures(), hit.triangle, hit.weights, 0).w;
+        through *= 1 - static_cast<double>(opacity) / 255;
+        if (through <= 0.5) seen = SeenObject{hit.range_m, o.instance};
+        return !seen;
+      },
+      [&](const VolumeStretch& stretch) {
+        for (const std::uint32_t n : stretch.crossings) {
+          const VolumeCrossing& c = crossings[n];
+          const PlacedObject& o = objects[c.object];
+          march(*o.volume, c.ray, stretch.begin_m - c.begin_m, stretch.end_m - c.begin_m,
+                [&](const VolumeStep& step) {
+                  const double left = through * std::exp(-step.depth);
+                  if (left <= 0.5) {
+                    const double share = std::log(2 * through) / step.depth;
+                    seen = SeenObject{c.begin_m + step.begin + share * (step.end - step.begin), o.instance};
+                  }
+                  through = left;
+                  return !seen;
+                });
+          if (seen) break;
+        }
+        return !seen;
+      });
+  return seen;
 }
 
 }  // namespace

@@ -76,10 +76,7 @@ bool SquarePainter::paint_by_area(const PlacedObject& o, const Seen& seen, vpe::
       if (range_m > front_m) continue;
       const double weight = (i == 0 ? 1 - beside.x : beside.x) * (j == 0 ? 1 - beside.y : beside.y);
       const double share = std::min(1.0, covered * weight);
-      vpe::base::Rgb& pixel =
-          frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
-                       static_cast<std::size_t>(x)];
-      pixel = to_rgb(glm::mix(to_dvec3(pixel), colour, share));
+      add_small(o, x, y, share, colour, frame);
       shows = true;
     }
   }
@@ -136,7 +133,7 @@ void SquarePainter::find_thin() {
   const double most_disc_px = 2 * image_.light.request.settings.lod_tolerance_px * image_.rays.rule().stretch;
   for (std::uint32_t n = 0; n < near_to_far_.size(); ++n) {
     PlacedObject& o = near_to_far_[n];
-    if (!o.by_rays || o.diameter_px > kMostThin_px || is_met(n)) continue;
+    if (!o.by_rays || o.volume != nullptr || o.diameter_px > kMostThin_px || is_met(n)) continue;
     if (is_met(n, thin_offsets(o), false)) {
       thin_.push_back(n);
     } else if (o.diameter_px <= most_disc_px) {
@@ -161,11 +158,8 @@ bool SquarePainter::paint_thin(std::uint32_t object, const Seen& seen, vpe::core
         if (scratch_.has_front || !scratch_.layers.empty()) over += shader_->colour(ray, scratch_).over;
       }
       if (!(over.w > 0)) continue;
-      over /= static_cast<double>(offsets.size());
-      vpe::base::Rgb& pixel =
-          frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
-                       static_cast<std::size_t>(x)];
-      pixel = to_rgb(to_dvec3(pixel) * (1 - over.w) + glm::dvec3(over));
+      add_small(near_to_far_[object], x, y, over.w / static_cast<double>(offsets.size()),
+                glm::dvec3(over) / over.w, frame);
       shows = true;
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace objects {
 
@@ -13,6 +14,7 @@ constexpr int kPart_px = 8;
 constexpr int kGroup_px = 32;
 // Difference of light between pixels beside each other from which on the edge of a shadow is smoothed.
 constexpr float kShadowEdge = 0.05F;
+constexpr std::uint32_t kNoObject = std::numeric_limits<std::uint32_t>::max();
 
 // Returns a ball around what rays of a cone meet between two ranges.
 SceneBall ball_between(const glm::dvec3& camera_m, const ViewCone& cone, double near_m, double far_m) {
@@ -58,7 +60,7 @@ bool SquarePainter::is_wanted(int x, int y) const {
 }
 
 SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
-  SubSquare part{square, {}, false, {}};
+  SubSquare part{square, {}, false, {}, {}, false};
   const ViewCone cone = cone_of(view_, image_.view_rays, square, 1);
   double near_m = std::numeric_limits<double>::infinity();
   double far_m = 0;
@@ -76,8 +78,9 @@ SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const
     const PlacedObject& o = near_to_far_[n];
     if (o.near_m > until_m) break;
     if (!o.by_rays || !meets(cone, view_.camera.position_m, o.around.centre_m, o.around.radius_m)) continue;
-    part.near_to_far.push_back(n);
+    (o.volume != nullptr ? part.volumes : part.near_to_far).push_back(n);
     if (image_.samples == 1 || o.diameter_px > most_small_px(o)) continue;
+    part.has_small_volumes = part.has_small_volumes || o.volume != nullptr;
     const vpe::core::Projected at = vpe::core::project(view_, o.around.centre_m);
     if (!at.behind) part.small.push_back({at.xy, 0.5 * o.diameter_px + 0.75});
   }
@@ -93,14 +96,18 @@ ObjectRay SquarePainter::ray_of(int x, int y, const glm::dvec2& offset) const {
 ObjectColour SquarePainter::object_at(const SubSquare& part, const ObjectRay& ray, double until_m,
                                       std::uint32_t& front) {
   nearest_object(near_to_far_, part.near_to_far, ray, until_m, image_.pixel_rad, scratch_);
-  if (!scratch_.has_front && scratch_.layers.empty()) return {};
+  const bool has_surface = scratch_.has_front || !scratch_.layers.empty();
+  if (!has_surface && part.volumes.empty()) return {};
+  if (!has_surface) return volume_shader_->colour(ray, scratch_, part.volumes, until_m);
   front =
       1 +
       near_to_far_[scratch_.layers.empty() ? scratch_.front.object : scratch_.layers.front().object].instance;
-  return shader_->colour(ray, scratch_);
+  return part.volumes.empty() ? shader_->colour(ray, scratch_)
+                              : volume_shader_->colour(ray, scratch_, part.volumes, until_m);
 }
 
-// Covers the pixel by many rays, and colours each object that they meet once: colour changes little within a pixel.
+// Covers the pixel by many rays, and colours each object that they meet once: colour changes little within a pixel. So does
+// that of volumes before an object, or before the ground.
 glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
   struct ColouredObject {
     std::uint32_t object;
@@ -111,17 +118,22 @@ glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
   glm::dvec4 sum(0);
   for (const glm::dvec2& offset : kEdgeOffsets) {
     const ObjectRay ray = ray_of(x, y, offset);
-    nearest_object(near_to_far_, part.near_to_far, ray, ground_.beside(x, y, offset), image_.pixel_rad,
-                   scratch_);
-    if (!scratch_.has_front && scratch_.layers.empty()) continue;
-    if (!scratch_.layers.empty()) {
-      sum += shader_->colour(ray, scratch_).over;
+    const double ground_m = ground_.beside(x, y, offset);
+    nearest_object(near_to_far_, part.near_to_far, ray, ground_m, image_.pixel_rad, scratch_);
+    if (!scratch_.has_front && scratch_.layers.empty() && part.volumes.empty()) continue;
+    const auto colour = [&] {
+      return (part.volumes.empty() ? shader_->colour(ray, scratch_)
+                                   : volume_shader_->colour(ray, scratch_, part.volumes, ground_m))
+          .over;
+    };
+    if (!scratch_.layers.empty() || part.has_small_volumes) {
+      sum += colour();
       continue;
     }
+    const std::uint32_t object = scratch_.has_front ? scratch_.front.object : kNoObject;
     const auto end = known.begin() + static_cast<std::ptrdiff_t>(count);
-    auto at = std::find_if(known.begin(), end,
-                           [&](const ColouredObject& s) { return s.object == scratch_.front.object; });
-    if (at == end) *at = {scratch_.front.object, shader_->colour(ray, scratch_).over}, ++count;
+    auto at = std::find_if(known.begin(), end, [&](const ColouredObject& s) { return s.object == object; });
+    if (at == end) *at = {object, colour()}, ++count;
     sum += at->over;
   }
   return sum / static_cast<double>(kEdgeOffsets.size());
@@ -138,7 +150,8 @@ void SquarePainter::see_pixel(const SubSquare& part, int x, int y) {
   SeenPixel& seen = seen_at(x, y);
   const ObjectRay ray = ray_of(x, y, {0, 0});
   const auto range_m = static_cast<double>(ground_.at(x, y));
-  if (!part.near_to_far.empty()) seen.object = object_at(part, ray, range_m, seen.front);
+  if (!part.near_to_far.empty() || !part.volumes.empty())
+    seen.object = object_at(part, ray, range_m, seen.front);
   if (part.may_be_shaded && seen.object.over.w < 1 && !std::isinf(range_m))
     seen.light = static_cast<float>(image_.before_sun.light_at(ray.origin_m + range_m * ray.direction));
 }
@@ -154,6 +167,12 @@ void SquarePainter::see() {
                static_cast<std::size_t>(square_.y1 - square_.y0));
   shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light);
   const ObjectNumbers all = all_of(near_to_far_);
+  if (image_.volume_lights != nullptr) {
+    volume_shader_.emplace(*shader_, *image_.volume_lights, near_to_far_, image_.light);
+    for (const std::uint32_t n : all) {
+      if (near_to_far_[n].volume != nullptr) volumes_.push_back(n);
+    }
+  }
   for (int y = square_.y0; y < square_.y1; y += kGroup_px) {
     for (int x = square_.x0; x < square_.x1; x += kGroup_px) {
       const PixelSquare group{x, y, std::min(x + kGroup_px, square_.x1), std::min(y + kGroup_px, square_.y1)};
@@ -173,7 +192,7 @@ void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& am
     for (int x = square.x0; x < square.x1; x += kPart_px) {
       SubSquare part =
           part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
-      if (part.near_to_far.empty() && !part.may_be_shaded) continue;
+      if (part.near_to_far.empty() && part.volumes.empty() && !part.may_be_shaded) continue;
       for (int j = part.square.y0; j < part.square.y1; ++j) {
         for (int i = part.square.x0; i < part.square.x1; ++i) see_pixel(part, i, j);
       }
@@ -205,7 +224,7 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
   if (!is_edge && !is_shadow_edge && !(here.object.over.w > 0) && here.light >= 1) return;
   ObjectColour object = here.object;
   double light = static_cast<double>(here.light);
-  if (is_edge && !part.near_to_far.empty()) object.over = smooth_sample(part, x, y);
+  if (is_edge && (!part.near_to_far.empty() || part.has_small_volumes)) object.over = smooth_sample(part, x, y);
   if (is_shadow_edge && part.may_be_shaded) {
     light = 0;
     for (const glm::dvec2& offset : kEdgeOffsets)
@@ -233,6 +252,20 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
     frame.range_m[pixel] = static_cast<float>(here.object.range_m);
 }
 
+// Volumes before it veil it.
+void SquarePainter::add_small(const PlacedObject& object, int x, int y, double share, const glm::dvec3& colour,
+                              vpe::core::Frame& frame) {
+  vpe::base::Rgb& pixel = frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_width_) +
+                                       static_cast<std::size_t>(x)];
+  glm::dvec3 shown = colour;
+  if (!volumes_.empty()) {
+    const double range_m = glm::distance(object.around.centre_m, view_.camera.position_m);
+    const glm::dvec4 over = volume_shader_->colour(ray_of(x, y, {0, 0}), {}, volumes_, range_m).over;
+    shown = glm::dvec3(over) + (1 - over.w) * colour;
+  }
+  pixel = to_rgb(glm::mix(to_dvec3(pixel), shown, share));
+}
+
 void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
   for (const SubSquare& part : parts_) {
     for (int y = part.square.y0; y < part.square.y1; ++y) {
@@ -248,6 +281,9 @@ void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
   for (const SeenPixel& pixel : seen_) {
     if (pixel.front != 0 && (drawn_.instances.empty() || drawn_.instances.back() != pixel.front - 1))
       drawn_.instances.push_back(pixel.front - 1);
+  }
+  for (const std::uint32_t n : volumes_) {
+    if (volume_shader_->has_shown(n)) drawn_.instances.push_back(near_to_far_[n].instance);
   }
   std::sort(drawn_.instances.begin(), drawn_.instances.end());
   drawn_.instances.erase(std::unique(drawn_.instances.begin(), drawn_.instances.end()), drawn_.instances.end());

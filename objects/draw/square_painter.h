@@ -10,6 +10,7 @@
 
 #include "objects/draw/composer.h"
 #include "objects/draw/pixel_square.h"
+#include "objects/draw/volume_shader.h"
 
 namespace objects {
 
@@ -52,8 +53,9 @@ class SquarePainter {
     const ViewRays& view_rays;
     ImageLight light;
     std::span<const std::uint8_t> only;
-    int samples = 1;       // at edges; 1: edges are not smoothed
-    double pixel_rad = 0;  // angle of a pixel at the image's middle
+    int samples = 1;                              // at edges; 1: edges are not smoothed
+    double pixel_rad = 0;                         // angle of a pixel at the image's middle
+    const VolumeLights* volume_lights = nullptr;  // null: the scene has no volumes
   };
 
   // `frame` is read only.
@@ -85,9 +87,11 @@ class SquarePainter {
   };
   struct SubSquare {
     PixelSquare square;
-    ObjectNumbers near_to_far;
+    ObjectNumbers near_to_far;  // without volumes
     bool may_be_shaded = false;
     std::vector<SmallObject> small;
+    ObjectNumbers volumes;
+    bool has_small_volumes = false;
   };
   SeenPixel& seen_at(int x, int y) { return const_cast<SeenPixel&>(at(x, y)); }
   bool is_wanted(int x, int y) const;
@@ -95,6 +99,8 @@ class SquarePainter {
   SubSquare part_of(const PixelSquare& square, const ObjectNumbers& among) const;
   void see_parts(const PixelSquare& square, const ObjectNumbers& among);
   ObjectRay ray_of(int x, int y, const glm::dvec2& offset) const;
+  void add_small(const PlacedObject& object, int x, int y, double share, const glm::dvec3& colour,
+                 vpe::core::Frame& frame);
   ObjectColour object_at(const SubSquare& part, const ObjectRay& ray, double until_m, std::uint32_t& front);
   double light_sample(int x, int y, const glm::dvec2& offset) const;
   glm::dvec4 smooth_sample(const SubSquare& part, int x, int y);
@@ -122,6 +128,8 @@ class SquarePainter {
   bool may_be_shaded_ = false;
   ObjectNumbers thin_;  // objects that pass between all rays of the image, ascending
   std::optional<ObjectShader> shader_;
+  std::optional<VolumeShader> volume_shader_;  // where volumes may show
+  ObjectNumbers volumes_;                      // of near_to_far_
   std::vector<SeenPixel> seen_;
   std::vector<SubSquare> parts_;
   RayResult scratch_;

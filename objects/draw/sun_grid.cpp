@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mars/geodesy/sphere.h"
+#include "objects/draw/volume_rays.h"
 
 namespace objects {
 
@@ -29,6 +30,9 @@ SunGrid::SunGrid(const ObjectRays& rays, const glm::dvec3& sun) : rays_(&rays), 
               [&](std::uint32_t n) {
                 const SceneBall ball = scene.ball(n);
                 discs_.push_back(disc_of(ball.centre_m, ball.radius_m, n));
+                if (scene.models()[scene.instance(n).model]->volume() == nullptr) return;
+                discs_.back().volume = static_cast<std::int32_t>(volumes_.size());
+                volumes_.push_back(rays.placed(n));
               });
   if (discs_.empty()) return;
   std::vector<double> radii_m;
@@ -109,6 +113,10 @@ bool SunGrid::may_shade(const glm::dvec3& centre_m, double radius_m) const {
 
 void SunGrid::dim(const Disc& disc, const Disc& place, const glm::dvec3& place_m, double& light) const {
   if (light <= 0 || !hides(disc, place)) return;
+  if (disc.volume >= 0) {
+    light *= volume_through(volumes_[static_cast<std::size_t>(disc.volume)], {place_m, sun_});
+    return;
+  }
   constexpr std::array<std::uint32_t, 1> kOne{0};
   const PlacedObject object = rays_->placed(disc.instance);
   light *= light_through({&object, 1}, kOne, {place_m, sun_});

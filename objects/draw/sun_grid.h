@@ -36,6 +36,7 @@ class SunGrid {
     double along_m;
     double radius_m;
     std::uint32_t instance;
+    std::int32_t volume = -1;  // of volumes_
   };
   struct Range {
     std::uint32_t begin;
@@ -55,6 +56,7 @@ class SunGrid {
   glm::dvec3 origin_m_{0, 0, 0};
   double cell_m_ = 1;
   std::vector<Disc> discs_;
+  std::vector<PlacedObject> volumes_;   // rays of many places meet them
   std::vector<std::uint32_t> large_;    // discs that cover many cells
   std::vector<std::uint32_t> entries_;  // discs, cell by cell
   std::unordered_map<Key, Range> cells_;

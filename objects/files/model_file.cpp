@@ -50,7 +50,7 @@ bool is_model_path(const fs::path& path) {
 
 std::string model_reader_program() { return child_program(kProgram, kVariable); }
 
-ModelFile read_model_file(const fs::path& path, const ModelFileOptions& options) {
+std::vector<std::uint8_t> output_of_model_reader(const fs::path& path, const ModelFileOptions& options) {
   check_options(options);
   const auto fail = [&](std::string_view reason, std::string_view advice) {
     return vpe::base::file_error(kOperation, path, reason, advice);
@@ -62,9 +62,6 @@ ModelFile read_model_file(const fs::path& path, const ModelFileOptions& options)
   if (!fs::is_regular_file(status))
     throw fail(fs::is_directory(status) ? "it is a folder" : "it is a device or pipe",
                "give the name of a file");
-  if (!is_model_path(path))
-    throw fail("its extension is not .gltf, .glb, .obj, .ply or .stl",
-               "export the model in one of these formats");
   const std::string program = model_reader_program();
   if (program.empty()) {
     const char* chosen = std::getenv(kVariable);
@@ -102,9 +99,21 @@ ModelFile read_model_file(const fs::path& path, const ModelFileOptions& options)
     throw fail("the reader of models ended with status " + std::to_string(WEXITSTATUS(output.status)) +
                    " and without a model",
                kDamagedAdvice);
+  return std::move(output.bytes);
+}
+
+ModelFile read_model_file(const fs::path& path, const ModelFileOptions& options) {
+  const auto fail = [&](std::string_view reason, std::string_view advice) {
+    return vpe::base::file_error(kOperation, path, reason, advice);
+  };
+  std::error_code none;
+  if (fs::is_regular_file(path, none) && !is_model_path(path))
+    throw fail("its extension is not .gltf, .glb, .obj, .ply or .stl",
+               "export the model in one of these formats");
+  const std::vector<std::uint8_t> bytes = output_of_model_reader(path, options);
   MeshStream stream;
   try {
-    stream = read_mesh_stream(output.bytes);
+    stream = read_mesh_stream(bytes);
   } catch (const std::runtime_error& error) {
     throw fail(error.what(), kDamagedAdvice);
   }

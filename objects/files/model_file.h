@@ -40,6 +40,11 @@ struct ModelFile {
 // than its time. Throws std::invalid_argument for options out of range.
 ModelFile read_model_file(const std::filesystem::path& path, const ModelFileOptions& options = {});
 
+// Returns what vpe-model-reader writes about a file (mesh_stream.h, or the bytes of a volume). Throws as read_model_file()
+// does where the program fails, but looks at no extension. Internal to objects/files.
+std::vector<std::uint8_t> output_of_model_reader(const std::filesystem::path& path,
+                                                 const ModelFileOptions& options);
+
 // Returns true for the extensions that read_model_file() accepts, in any case.
 bool is_model_path(const std::filesystem::path& path);
 

@@ -72,7 +72,7 @@ std::vector<std::filesystem::path> files_of(const SceneFile& scene) {
   std::vector<std::filesystem::path> files{scene.path};
   std::set<std::filesystem::path> known{scene.path};
   for (const ModelEntry& model : scene.models) {
-    if (!known.insert(model.file).second) continue;
+    if (model.formula || !known.insert(model.file).second) continue;
     files.push_back(model.file);
     for (const std::filesystem::path& file : model_references(model.file)) {
       if (known.insert(file).second) files.push_back(file);

@@ -7,6 +7,11 @@
 //   [[model]]                                  # name, file; unit_m = 1, up = "auto" | "y" | "z"
 //   name = "rover"
 //   file = "models/rover.glb"
+//   [[volume]]                                 # a model by formula (objects/volumes/volume_formulas.h): name,
+//   name = "devil"                             # height_m, radius_m, optical_depth = 1, lean_m = 0, colour, seed = 1,
+//   kind = "dust-devil"                        # voxels = 128; kind: or "cloud", "plume"
+//   height_m = 120
+//   radius_m = 15
 //   [[object]]                                 # model; name
 //   model = "rover"                            # lon and lat, or at = [[lon, lat], [lon, lat, heading]]
 //   lon = 137.4                                # height = 0 above the ground, or altitude above the sphere
@@ -41,6 +46,7 @@
 
 #include "mars/geodesy/sphere.h"
 #include "objects/files/up_axis.h"
+#include "objects/volumes/volume_formulas.h"
 
 namespace objects {
 
@@ -52,9 +58,10 @@ inline constexpr std::size_t kMostPolygonCorners = 2000;
 
 struct ModelEntry {
   std::string name;            // unique in the file; of GeoJSON: the path as it stands there
-  std::filesystem::path file;  // with the scene file's folder
+  std::filesystem::path file;  // with the scene file's folder; empty: by formula
   double unit_m = 1;           // metres of a unit of the model file
   UpAxis up = UpAxis::kAuto;
+  std::optional<VolumeFormula> formula = std::nullopt;
 };
 
 enum class HeightKind : std::uint8_t {
@@ -142,7 +149,8 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path);
 SceneFile parse_scene_geojson(std::string_view text, const std::filesystem::path& path);
 
-// Returns the scene file, the files of its models, and those that they consist of (model_references.h), each once.
+// Returns the scene file, the files of its models, and those that they consist of (model_references.h), each once; volumes by
+// formula have none.
 std::vector<std::filesystem::path> files_of(const SceneFile& scene);
 
 }  // namespace objects

@@ -27,6 +27,10 @@ inline constexpr NumberRange kDensityRange_per_m2{0, 1e6, true};
 inline constexpr NumberRange kExponentRange{0, 20};
 inline constexpr NumberRange kAbundanceRange{0.001, 1};
 inline constexpr NumberRange kDiameterRange_m{0.001, 1e5};
+inline constexpr NumberRange kVolumeSizeRange_m{0.01, 1e6};
+inline constexpr NumberRange kLeanRange_m{0, 1e6};
+inline constexpr NumberRange kOpticalDepthRange{0, 100, true};
+inline constexpr NumberRange kChannelRange{0, 255};
 
 // Returns true for a finite number in the range.
 bool is_within(double value, const NumberRange& range);

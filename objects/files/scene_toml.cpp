@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -19,10 +20,11 @@ class SceneTomlReader {
 
   SceneFile read(const toml::table& root) {
     const TomlTable top(root, "the file", file_);
-    top.require_known({"version", "model", "object", "scatter", "path"});
+    top.require_known({"version", "model", "volume", "object", "scatter", "path"});
     if (!top.has("version")) top.fail("version is missing; expected version = 1");
     top.integer("version", 1, 1);
     each(top, "model", "[[model]]", [this](const TomlTable& table) { read_model(table); });
+    each(top, "volume", "[[volume]]", [this](const TomlTable& table) { read_volume(table); });
     each(top, "object", "[[object]]", [this](const TomlTable& table) { read_object(table); });
     each(top, "scatter", "[[scatter]]", [this](const TomlTable& table) { read_scatter(table); });
     each(top, "path", "[[path]]", [this](const TomlTable& table) { read_path(table); });
@@ -49,9 +51,46 @@ class SceneTomlReader {
     model.file = model_path(scene_.path, table.text("file", problem_of_path));
     model.unit_m = table.number("unit_m", kUnitRange_m, 1);
     if (table.has("up")) model.up = static_cast<UpAxis>(table.choice("up", {"auto", "y", "z"}));
+    add_model(table, std::move(model));
+  }
+
+  // Models and volumes have their names in common.
+  void add_model(const TomlTable& table, ModelEntry model) {
     if (!models_.try_emplace(model.name, scene_.models.size()).second)
       table.fail(table.at("name"), "there are two models " + vpe::base::quote_text(model.name));
     scene_.models.push_back(std::move(model));
+  }
+
+  void read_volume(const TomlTable& table) {
+    table.require_known(
+        {"name", "kind", "height_m", "radius_m", "optical_depth", "lean_m", "colour", "seed", "voxels"});
+    VolumeFormula formula;
+    formula.kind = static_cast<VolumeKind>(table.choice("kind", {"dust-devil", "cloud", "plume"}));
+    formula.height_m = table.number("height_m", kVolumeSizeRange_m);
+    formula.radius_m = table.number("radius_m", kVolumeSizeRange_m);
+    formula.optical_depth = table.number("optical_depth", kOpticalDepthRange, formula.optical_depth);
+    formula.lean_m = table.number("lean_m", kLeanRange_m, formula.lean_m);
+    if (formula.kind == VolumeKind::kCloud) formula.colour = {225, 220, 215, 255};
+    if (table.has("colour")) {
+      const toml::array& parts = parts_of(table, table.at("colour"), "colour", 3, 3, "[red, green, blue]");
+      const auto channel = [&](std::size_t n) {
+        return static_cast<std::uint8_t>(std::lround(table.number_of(parts[n], "colour", kChannelRange)));
+      };
+      formula.colour = {channel(0), channel(1), channel(2), 255};
+    }
+    if (table.has("seed")) {
+      formula.seed =
+          static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+    }
+    if (table.has("voxels")) {
+      formula.voxels = static_cast<int>(
+          table.integer("voxels", VolumeFormulaLimits::kLeastVoxels, VolumeFormulaLimits::kMostVoxels));
+    }
+    if (const std::string problem = check(formula); !problem.empty()) table.fail("[[volume]]: " + problem);
+    ModelEntry model;
+    model.name = table.text("name", problem_of_name);
+    model.formula = formula;
+    add_model(table, std::move(model));
   }
 
   void read_object(const TomlTable& table) {

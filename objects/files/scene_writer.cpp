@@ -105,12 +105,29 @@ class SceneTomlWriter {
   }
 
   void write_model(const ModelEntry& model) {
-    const auto& [name, file, unit_m, up] = model;
+    const auto& [name, file, unit_m, up, formula] = model;
+    if (formula) return write_volume(name, *formula);
     begin("model");
     add("name", name_in_quotes(name));
     add("file", path_text(file, file_));
     add_number("unit_m", unit_m, 1);
     if (up != UpAxis::kAuto) add("up", "\"" + std::string(kUpWords[static_cast<std::size_t>(up)]) + "\"");
+  }
+
+  void write_volume(const std::string& name, const VolumeFormula& formula) {
+    constexpr std::array<std::string_view, 3> kKinds{"dust-devil", "cloud", "plume"};
+    const auto& [kind, height_m, radius_m, optical_depth, lean_m, colour, seed, voxels] = formula;
+    begin("volume");
+    add("name", name_in_quotes(name));
+    add("kind", "\"" + std::string(kKinds[static_cast<std::size_t>(kind)]) + "\"");
+    add("height_m", toml_number(height_m));
+    add("radius_m", toml_number(radius_m));
+    add("optical_depth", toml_number(optical_depth));
+    add_number("lean_m", lean_m, 0);
+    add("colour", "[" + std::to_string(colour.r) + ", " + std::to_string(colour.g) + ", " +
+                      std::to_string(colour.b) + "]");
+    add("seed", std::to_string(seed));
+    add("voxels", std::to_string(voxels));
   }
 
   void write_object(const ObjectEntry& object) {

@@ -1,10 +1,16 @@
 // vpe-model-reader FILE UNIT_M UP [MEMORY_GB TIME_S]: writes the stream of a model (objects/files/mesh_stream.h) to standard
-// output. Ends with status 1 where the stream has an error in place of a mesh, and 2 for a wrong use.
+// output. Ends with status 1 where the stream has an error in place of a mesh, and 2 for a wrong use. For an OpenVDB file it
+// becomes vpe-vdb-reader, with its limits (objects/reader/vdb).
+
+#include <unistd.h>
 
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "objects/files/child_limits.h"
 #include "objects/reader/assimp_reader.h"
@@ -24,6 +30,16 @@ objects::MeshStream refused(const std::string& reason, const std::string& advice
   stream.error = reason;
   stream.advice = advice;
   return stream;
+}
+
+bool is_vdb(std::string_view file) { return file.ends_with(".vdb") || file.ends_with(".VDB"); }
+
+// Returns only where there is no such program.
+void become_vdb_reader(char** words) {
+  std::error_code none;
+  const std::string program =
+      std::filesystem::read_symlink("/proc/self/exe", none).replace_filename("vpe-vdb-reader").string();
+  ::execv(program.c_str(), words);
 }
 
 objects::MeshStream read(const char* file, const objects::ModelFileOptions& options) {
@@ -57,7 +73,10 @@ int main(int count, char** words) {
   options.up = *up;
   objects::limit_this_process(options.memory_gb, options.time_s);
 
-  const objects::MeshStream stream = read(words[1], options);
+  if (is_vdb(words[1])) become_vdb_reader(words);
+  const objects::MeshStream stream = is_vdb(words[1]) ? refused("this program was built without OpenVDB",
+                                                                "install libopenvdb-dev and build it again")
+                                                      : read(words[1], options);
   bool is_sent = true;
   objects::write_mesh_stream(
       stream, [&](std::span<const std::uint8_t> bytes) { is_sent = is_sent && objects::send_output(bytes); });

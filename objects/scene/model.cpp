@@ -71,6 +71,17 @@ Model::Model(std::string name, std::shared_ptr<const StickModel> sticks)
   mean_opacity_ = look.opacity;
 }
 
+Model::Model(std::string name, std::shared_ptr<const VolumeModel> volume)
+    : name_(std::move(name)), volume_(std::move(volume)) {
+  if (volume_ == nullptr) throw std::invalid_argument("a model needs a level");
+  for (std::size_t n = 0; n < volume_->levels().size(); ++n) errors_m_.push_back(volume_->level_error_m(n));
+  ball_ = volume_->ball();
+  const Rgba& colour = volume_->colour();
+  mean_colour_ = {colour.r, colour.g, colour.b};
+  mean_silhouette_m2_ = volume_->look().silhouette_m2;
+  mean_opacity_ = volume_->look().opacity;
+}
+
 std::size_t Model::level_within(double geometric_error_m) const {
   std::size_t best = 0;
   for (std::size_t n = 1; n < errors_m_.size(); ++n) {
@@ -83,7 +94,7 @@ std::size_t Model::bytes() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) sum += level.mesh.bytes() + level.tree.bytes();
   for (const TexturePyramid& t : textures_) sum += t.bytes();
-  return sum + (sticks_ ? sticks_->bytes() : 0);
+  return sum + (sticks_ ? sticks_->bytes() : 0) + (volume_ ? volume_->bytes() : 0);
 }
 
 }  // namespace objects

@@ -1,4 +1,5 @@
-// A model: levels of detail of a mesh with their trees, or sticks of voxels, and a ball around them.
+// A model: levels of detail of a mesh with their trees, or sticks of voxels, or a semi-transparent volume, and a ball
+// around them.
 //
 // Typical usage:
 //   const Model model("rover", make_levels_apart(std::move(mesh)));
@@ -12,6 +13,7 @@
 #include "objects/model/mesh_level.h"
 #include "objects/model/texture_pyramid.h"
 #include "objects/sticks/stick_model.h"
+#include "objects/volumes/volume_model.h"
 
 namespace objects {
 
@@ -25,15 +27,19 @@ class Model {
   Model(std::string name, std::vector<Level> levels);
   // Makes a model of sticks, which has no meshes.
   Model(std::string name, std::shared_ptr<const StickModel> sticks);
+  // Makes a semi-transparent model, which has neither meshes nor sticks.
+  Model(std::string name, std::shared_ptr<const VolumeModel> volume);
 
   const std::string& name() const { return name_; }
   const std::vector<Level>& levels() const { return levels_; }
-  // Returns the sticks, or null for a model of meshes.
+  // Returns the sticks, or null for other models.
   const StickModel* sticks() const { return sticks_.get(); }
+  // Returns the volume, or null for other models.
+  const VolumeModel* volume() const { return volume_.get(); }
   const std::vector<TexturePyramid>& textures() const { return textures_; }
   // A ball around all levels that are drawn.
   const Ball& ball() const { return ball_; }
-  // Returns the index of the coarsest level, of meshes or sticks, whose error is at most geometric_error_m; 0 if none is.
+  // Returns the index of the coarsest level, of meshes, sticks or a volume, whose error is at most geometric_error_m; 0 if none is.
   std::size_t level_within(double geometric_error_m) const;
   // Returns the error of a level.
   double level_error_m(std::size_t level) const { return errors_m_[level]; }
@@ -51,6 +57,7 @@ class Model {
   std::string name_;
   std::vector<Level> levels_;
   std::shared_ptr<const StickModel> sticks_;
+  std::shared_ptr<const VolumeModel> volume_;
   std::vector<double> errors_m_;  // of levels
   std::vector<TexturePyramid> textures_;
   Ball ball_;

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "objects/volumes/volume_file.h"
+#include "objects/volumes/volume_formulas.h"
 #include "tests/app/support/app_fixture.h"
 #include "vpe/core/image/image.h"
 
@@ -10,7 +12,9 @@ namespace {
 
 class SceneCommands : public AppTest {
  protected:
-  static std::string rover() { return std::string(VPE_SOURCE_DIR) + "/scripts/scenes/models/rover.glb"; }
+  static std::string rover() {
+    return (std::filesystem::path(VPE_SOURCE_DIR) / "scripts/scenes/models/rover.glb").string();
+  }
 
   // Writes the silhouette of an ellipse that fills the image but for a margin, on grey.
   void write_ellipse(const std::string& name, int width, int height, const vpe::base::Rgb& colour) const {
@@ -65,6 +69,35 @@ TEST_F(SceneCommands, ObjectRefusesWhatItCannotDo) {
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_NE(missing.err.find("no.glb"), std::string::npos);
   EXPECT_EQ(vpe({"object", rover(), "--voxels", "0", "-o", "a.sticks"}).exit_code, 2);
+}
+
+TEST_F(SceneCommands, ObjectDescribesAndChangesVolumes) {
+  objects::VolumeFormula formula;
+  formula.voxels = 32;
+  objects::write_volume_file(dir_ / "devil.volume", objects::volume_by_formula(formula));
+  const Result told = vpe({"object", "devil.volume", "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  const auto json = parse_json(told.out);
+  EXPECT_GT(json["bricks"].get<int>(), 3);
+  EXPECT_NEAR(json["size_m"][2].get<double>(), 105, 12);
+  EXPECT_NE(vpe({"object", "devil.volume"}).out.find("extinction"), std::string::npos);
+  ASSERT_EQ(vpe({"object", "devil.volume", "--density", "2", "--colour", "102030", "-o", "b.volume"}).exit_code,
+            0);
+  const auto changed = parse_json(vpe({"object", "b.volume", "--json"}).out);
+  EXPECT_EQ(changed["colour"], nlohmann::json({16, 32, 48}));
+  EXPECT_NEAR(changed["largest_extinction_per_m"].get<double>(),
+              2 * json["largest_extinction_per_m"].get<double>(), 1e-6);
+  EXPECT_GT(changed["mean_opacity"].get<double>(), json["mean_opacity"].get<double>());
+  // What it cannot do.
+  EXPECT_EQ(vpe({"object", "devil.volume", "--colour", "red"}).exit_code, 2);
+  EXPECT_EQ(vpe({"object", rover(), "--density", "2"}).exit_code, 2);
+  EXPECT_NE(vpe({"object", "devil.volume", "--density", "1e9"}).exit_code, 0);
+  std::ofstream(dir_ / "c.volume") << "a letter";
+  EXPECT_NE(vpe({"object", "devil.volume", "-o", "c.volume"}).exit_code, 0);
+  EXPECT_EQ(read_text(dir_ / "c.volume"), "a letter");
+  const Result damaged = vpe({"object", "c.volume"});
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_NE(damaged.err.find("c.volume"), std::string::npos);
 }
 
 TEST_F(SceneCommands, SculptCarvesAHull) {

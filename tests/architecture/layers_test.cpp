@@ -56,17 +56,23 @@ const std::vector<Layer>& layers() {
       {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
       {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
-      {"objects/files", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model"}},
+      {"objects/volumes", "objects", {"vpe/base", "mars", "vpe/core", "objects/model"}},
+      {"objects/files",
+       "objects",
+       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/volumes"}},
       {"objects/sticks", "objects", {"vpe/base", "mars", "vpe/core", "objects/model", "objects/files"}},
       {"objects/scene",
        "objects",
-       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/files", "objects/sticks"}},
+       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/volumes", "objects/files",
+        "objects/sticks"}},
       {"objects/draw",
        "objects",
-       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/files", "objects/sticks",
-        "objects/scene"}},
+       {"vpe/base", "mars", "vpe/core", "cull", "lod", "objects/model", "objects/volumes", "objects/files",
+        "objects/sticks", "objects/scene"}},
       {"objects/levels", "objects", {"vpe/base", "mars", "vpe/core", "objects/model", "objects/files"}},
-      {"objects/reader", "objects", {"vpe/base", "mars", "vpe/core", "objects/model", "objects/files"}},
+      {"objects/reader",
+       "objects",
+       {"vpe/base", "mars", "vpe/core", "objects/model", "objects/volumes", "objects/files"}},
       {"paging/planet", "paging", {"vpe/base", "mars", "vpe/core", "lod"}},
       {"paging/build", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
       {"paging/surface", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
@@ -210,6 +216,8 @@ std::string include_problem(const Layer& layer, const std::string& name, bool qu
   if (is_fetching_header(name) && !layer.may_fetch) return "only vpe/app/get may include " + name;
   if (name.starts_with("assimp/") && layer.folder != "objects/reader")
     return "only objects/reader may include " + name;
+  if (name.starts_with("openvdb/") && layer.folder != "objects/reader" && !layer.folder.starts_with("tests"))
+    return "only objects/reader and tests may include " + name;
   if (!quoted) return "";
   const Layer* used = layer_of(name);
   if (used == nullptr) return "\"" + name + "\" is not given from the root of the repository";
@@ -347,6 +355,7 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_NE(verdict("vpe/app/panorama/a.cpp", "#include \"vpe/app/commands.h\"\n" + app), "");
   EXPECT_NE(verdict("mars/sources/a.cpp", "  #  include \"vpe/core/view.h\"\nnamespace mars {}"), "");
   EXPECT_NE(verdict("objects/files/a.cpp", "#include <assimp/scene.h>\nnamespace objects {}"), "");
+  EXPECT_NE(verdict("objects/volumes/a.cpp", "#include <openvdb/openvdb.h>\nnamespace objects {}"), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include <paging/../GL/gl.h>\n#include <GL/gl.h>\n" + lod), "");

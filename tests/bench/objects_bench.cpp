@@ -1,5 +1,5 @@
 // Measures what objects cost: frames of one view without and with them, by turns.
-//   objects_bench PLANET LON,LAT [ROUNDS]      e.g. /tmp/gale.vpe 137.4415,-4.5895
+//   objects_bench PLANET LON,LAT [ROUNDS [volumes]]      e.g. /tmp/gale.vpe 137.4415,-4.5895
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -52,6 +52,15 @@ struct Scenes {
                   lon_deg + west_m * kMetre_deg, lat_deg + north_m * kMetre_deg);
     return text;
   }
+  // A dust devil north of the camera; its image is 1.2 times as high as its height over its distance, in frames.
+  std::string devil(double height_m, double distance_m) const {
+    char text[400];
+    std::snprintf(text, sizeof text,
+                  "[[volume]]\nname = \"devil\"\nkind = \"dust-devil\"\nheight_m = %g\nradius_m = %g\n"
+                  "[[object]]\nmodel = \"devil\"\nlon = %.8f\nlat = %.8f\n",
+                  height_m, height_m / 6, lon_deg, lat_deg + distance_m * kMetre_deg);
+    return text;
+  }
   // A row of `count` objects in rows of 40, from 20 m north of the camera on, `step_m` apart.
   std::string rows(const std::string& model, int count, double scale, double first_m, double step_m) const {
     std::string text = "[[object]]\nmodel = \"" + model + "\"\nscale = " + std::to_string(scale) + "\nat = [";
@@ -69,7 +78,7 @@ struct Scenes {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: objects_bench PLANET LON,LAT [ROUNDS]\n");
+    std::fprintf(stderr, "usage: objects_bench PLANET LON,LAT [ROUNDS [volumes]]\n");
     return 2;
   }
   const auto planet = paging::PlanetFile::open(argv[1]);
@@ -99,7 +108,7 @@ int main(int argc, char** argv) {
   const std::string rocks =
       "[[scatter]]\nmodels = [\"fine\"]\npolygon = " + scenes.polygon(-150, 0, 150, 300) +
       "\ndensity_per_m2 = 1.1112\nexponent = 2.5\ndiameter_m = [0.05, 2]\ntumble = true\n";
-  const std::vector<Case> cases{
+  std::vector<Case> cases{
       {"no objects", ""},
       {"1000 replicas of the fine one, 1 m, 8 m apart",
        scenes.write("thousand", scenes.rows("fine", 1000, 1, 20, 8))},
@@ -109,6 +118,14 @@ int main(int argc, char** argv) {
       {"1000 fine ones of some pixels", scenes.write("far-fine", scenes.rows("fine", 1000, 0.5, 60, 3))},
       {"1000 coarse ones of some pixels", scenes.write("far-coarse", scenes.rows("coarse", 1000, 0.5, 60, 3))},
   };
+  const bool is_of_volumes = argc > 4 && std::string(argv[4]) == "volumes";
+  if (is_of_volumes) {
+    cases = {{"no objects", ""},
+             {"one rock", scenes.write("rock", scenes.rows("fine", 1, 0.3, 30, 1))},
+             {"a dust devil of a sixth of the height", scenes.write("devil-far", scenes.devil(45, 320))},
+             {"a dust devil of two thirds of the height", scenes.write("devil", scenes.devil(45, 80))},
+             {"a camera in a dust devil", scenes.write("devil-around", scenes.devil(45, 2))}};
+  }
   const auto measure = [&](const std::string& what, core::Renderer& renderer) {
     std::vector<std::function<void()>> runs;
     std::vector<core::Certificate> said(cases.size());
@@ -125,7 +142,13 @@ int main(int argc, char** argv) {
                   1000 * times[n].median_s(), vpe::report::ratio(times[n], times[0]),
                   said[n].objects ? static_cast<long long>(said[n].objects->drawn) : 0LL);
     }
-    std::printf("  fine over coarse at some pixels: %.3f\n", vpe::report::ratio(times[4], times[5]));
+    if (is_of_volumes) {
+      for (std::size_t n = 2; n < cases.size(); ++n)
+        std::printf("  %-48s %.3f of that with one rock\n", cases[n].name.c_str(),
+                    vpe::report::ratio(times[n], times[1]));
+    }
+    if (!is_of_volumes)
+      std::printf("  fine over coarse at some pixels: %.3f\n", vpe::report::ratio(times[4], times[5]));
   };
   const auto rays =
       vpe::app::with_objects(vpe::voxel::make_ray_renderer(planet, {std::size_t{512} << 20, 0}), planet, {});

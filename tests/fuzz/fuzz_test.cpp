@@ -76,6 +76,7 @@ TEST(Fuzz, AxisOrders) { run(fuzz::kAxes, 500, 1012); }
 TEST(Fuzz, Scenes) { run(fuzz::kScene, 5000, 1013); }
 TEST(Fuzz, Sticks) { run(fuzz::kSticks, 3000, 1014); }
 TEST(Fuzz, Meshes) { run(fuzz::kMesh, 20000, 1015); }
+TEST(Fuzz, Volumes) { run(fuzz::kVolume, 10000, 1016); }
 TEST(Fuzz, ForgedPlanets) { run(fuzz::kForged, 800, 1009); }
 TEST(Fuzz, Planets) { run(fuzz::kPlanet, 1500, 1003); }
 

@@ -1,4 +1,4 @@
-// Files of objects: scenes, models of sticks, and what the reader of models sends.
+// Files of objects: scenes, models of sticks, volumes, and what the reader of models sends.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -13,6 +13,8 @@
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/stick_file.h"
 #include "objects/sticks/voxelise.h"
+#include "objects/volumes/volume_file.h"
+#include "objects/volumes/volume_march.h"
 #include "tests/fuzz/targets.h"
 
 namespace fuzz {
@@ -73,7 +75,8 @@ std::vector<Bytes> scene_seeds() {
           "[[object]]\nmodel = \"a\"\nat = [[1, 2], [3, 4, 5]]\nscale = 2\n"
           "[[scatter]]\nmodels = [\"a\"]\npolygon = [[0, 0], [1, 0], [0, 1]]\nrock_abundance = 0.1\n"
           "diameter_m = [0.1, 2]\nseed = 4\n[[path]]\nmodel = \"a\"\npoints = [[0, 1, 2], [5, 2, 3, 90]]\n"
-          "wheelbase_m = 2\ntrack_m = 2\n"),
+          "wheelbase_m = 2\ntrack_m = 2\n[[volume]]\nname = \"d\"\nkind = \"plume\"\nheight_m = 90\nradius_m = 20\n"
+          "lean_m = 4\noptical_depth = 0.5\ncolour = [1, 2, 3]\nseed = 3\nvoxels = 32\n"),
       bytes_of_text(
           "!{\"type\": \"FeatureCollection\", \"features\": [{\"type\": \"Feature\", \"geometry\": {\"type\": "
           "\"Point\", \"coordinates\": [1, 2]}, \"properties\": {\"model\": \"a.glb\", \"heading\": 3, "
@@ -140,8 +143,35 @@ std::vector<Bytes> mesh_seeds() {
   return all;
 }
 
+void run_volume(std::span<const std::uint8_t> bytes) {
+  try {
+    const objects::VolumeModel model = objects::volume_of_bytes(bytes, "fuzz.volume");
+    require(!model.levels().empty(), "a volume has levels");
+    for (const objects::VolumeLevel& level : model.levels()) {
+      require(objects::check(level).empty(), "levels are sound");
+      const glm::dvec3 from(model.ball().centre_m - 2 * model.ball().radius_m);
+      const double depth = objects::optical_depth(level, {from, {1, 0.9, 1.1}}, 0, 1e9);
+      require(depth >= 0, "depths are numbers");
+    }
+  } catch (const std::runtime_error& e) {
+    require(std::string_view(e.what()).find("fuzz.volume") != std::string_view::npos, "messages name the file");
+  }
+}
+
+std::vector<Bytes> volume_seeds() {
+  std::vector<Bytes> all;
+  for (const int side : {4, 12}) {
+    objects::DenseVolume dense({{side, side, side + 3}, 0.5F, {-1, -1, 0}});
+    for (std::size_t n = 0; n < dense.values().size(); n += 3)
+      dense.values()[n] = static_cast<float>(n % 7) / 10;
+    all.push_back(objects::volume_bytes(objects::build_level(dense), {200, 100, 50, 255}, "fuzz.volume"));
+  }
+  return all;
+}
+
 }  // namespace
 
+const Target kVolume{"volume", run_volume, volume_seeds};
 const Target kScene{"scene", run_scene, scene_seeds};
 const Target kSticks{"sticks", run_sticks, stick_seeds};
 const Target kMesh{"mesh", run_mesh, mesh_seeds};

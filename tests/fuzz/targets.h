@@ -63,6 +63,9 @@ extern const Target kSticks;
 // Reads what vpe-model-reader sends.
 extern const Target kMesh;
 
+// Reads volumes and casts rays through them.
+extern const Target kVolume;
+
 // Ends the process with the message when `promise` does not hold.
 void require(bool promise, const char* message);
 

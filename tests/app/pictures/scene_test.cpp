@@ -69,6 +69,39 @@ TEST_F(SceneRender, BothBackendsShowTheSameObject) {
   EXPECT_NE(read_text(dir_ / "w.png"), read_text(dir_ / "r.png"));
 }
 
+// A plume of 20 km in place of the tower: the same veil and ranges, and its seed is part of the picture.
+TEST_F(SceneRender, BothBackendsShowTheSameVolume) {
+  const auto write = [&](int seed) {
+    write_scene(
+        "[[volume]]\nname = \"dust\"\nkind = \"plume\"\nheight_m = 20000\nradius_m = 5000\n"
+        "optical_depth = 4\nvoxels = 48\nseed = " +
+        std::to_string(seed) + "\n[[object]]\nmodel = \"dust\"\nlon = 20\nlat = 11.7\n");
+  };
+  write(1);
+  ASSERT_EQ(vpe(words("ray", "r.png", {"--range", "r.tif", "--certificate", "r.json"})).exit_code, 0);
+  ASSERT_EQ(vpe(words("polygon", "p.png", {"--range", "p.tif"})).exit_code, 0);
+  const vpe::core::FloatImage a = vpe::core::read_tiff(dir_ / "r.tif");
+  const vpe::core::FloatImage b = vpe::core::read_tiff(dir_ / "p.tif");
+  const vpe::core::RgbImage by_rays = vpe::core::read_image(dir_ / "r.png");
+  const vpe::core::RgbImage by_triangles = vpe::core::read_image(dir_ / "p.png");
+  const auto shows_plume = [](float r) { return r > 90'000 && r < 110'000; };
+  int plume = 0;
+  int different = 0;
+  int other_colour = 0;
+  for (std::size_t n = 0; n < a.pixels.size(); ++n) {
+    plume += shows_plume(a.pixels[n]) ? 1 : 0;
+    different += shows_plume(a.pixels[n]) != shows_plume(b.pixels[n]) ? 1 : 0;
+    other_colour += std::abs(by_rays.pixels[n].r - by_triangles.pixels[n].r) > 30 ? 1 : 0;
+  }
+  EXPECT_GT(plume, 100);
+  EXPECT_LE(different, static_cast<int>(a.pixels.size()) / 200);
+  EXPECT_LE(other_colour, static_cast<int>(a.pixels.size()) / 50);
+  EXPECT_EQ(parse_json(read_text(dir_ / "r.json"))["objects_drawn"], 1);
+  write(2);
+  ASSERT_EQ(vpe(words("ray", "s.png")).exit_code, 0);
+  EXPECT_NE(read_text(dir_ / "s.png"), read_text(dir_ / "r.png"));
+}
+
 TEST_F(SceneRender, AnImageIsDrawnAgainFromItsRecipe) {
   ASSERT_EQ(vpe(words("ray", "a.png")).exit_code, 0);
   const Result again = vpe({"render", planet().string(), "--from-image", "a.png", "-o", "b.png"});

@@ -25,7 +25,8 @@ bool same(const mars::LonLat& a, const mars::LonLat& b) {
   return same(a.lon_deg, b.lon_deg) && same(a.lat_deg, b.lat_deg);
 }
 bool same(const ModelEntry& a, const ModelEntry& b) {
-  return a.name == b.name && a.file == b.file && same(a.unit_m, b.unit_m) && a.up == b.up;
+  return a.name == b.name && a.file == b.file && same(a.unit_m, b.unit_m) && a.up == b.up &&
+         a.formula == b.formula;
 }
 bool same(const Placing& a, const Placing& b) {
   return same(a.place, b.place) && a.height_kind == b.height_kind && same(a.height_m, b.height_m) &&
@@ -83,10 +84,24 @@ class AnyScene {
   SceneFile make() {
     SceneFile scene;
     scene.path = "/scenes/a.scene.toml";
-    const auto models = static_cast<std::size_t>(below(4) + 1);
-    for (std::size_t n = 0; n < models; ++n) {
+    const auto files = static_cast<std::size_t>(below(4) + 1);
+    const auto models = files + static_cast<std::size_t>(below(3));
+    for (std::size_t n = 0; n < files; ++n) {
       scene.models.push_back({name() + std::to_string(n), fs::path(folder()) / (name() + ".glb"),
                               number(kUnitRange_m), static_cast<UpAxis>(below(3))});
+    }
+    // Volumes are read after the models.
+    for (std::size_t n = files; n < models; ++n) {
+      ModelEntry volume;
+      volume.name = name() + std::to_string(n);
+      VolumeFormula formula{static_cast<VolumeKind>(below(3)), number({1, 100}), number({1, 40}), number({0.1, 50})};
+      if (formula.kind != VolumeKind::kCloud) formula.lean_m = number({0, 40});
+      formula.colour = {static_cast<std::uint8_t>(below(256)), static_cast<std::uint8_t>(below(256)),
+                        static_cast<std::uint8_t>(below(256)), 255};
+      formula.seed = static_cast<std::uint64_t>(below(1'000'000));
+      formula.voxels = 16 + below(241);
+      volume.formula = formula;
+      scene.models.push_back(volume);
     }
     const auto any_model = [&] { return static_cast<std::size_t>(below(static_cast<int>(models))); };
     for (int n = below(5); n > 0; --n) {

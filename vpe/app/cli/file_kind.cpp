@@ -95,6 +95,7 @@ const char* name_of(FileKind kind) {
     case FileKind::kVideo: return "a film of 'vpe fly' with its manifest";
     case FileKind::kPlanet: return "a planet file of vpe";
     case FileKind::kSticks: return "a model of sticks of vpe";
+    case FileKind::kVolume: return "a volume of vpe";
   }
   return "";
 }
@@ -123,6 +124,7 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kVideo: return contains(std::string_view(head).substr(0, 12), "ftyp") && is_own_video(file);
     case FileKind::kPlanet: return paging::is_planet_file(file.string());
     case FileKind::kSticks: return head.starts_with("VPESTICK");
+    case FileKind::kVolume: return head.starts_with("VPEVOLUM");
   }
   return false;
 }

@@ -25,6 +25,7 @@ enum class FileKind : std::uint8_t {
   kVideo,   // MP4 of this program: its manifest or its segments lie beside it
   kPlanet,  // planet file of this program, also a part of one
   kSticks,  // model of sticks
+  kVolume,  // semi-transparent model
 };
 
 // Returns a name for messages, such as "a certificate of vpe".

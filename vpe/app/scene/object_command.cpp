@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "objects/files/model_file.h"
+#include "objects/files/volume_model_file.h"
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/stick_file.h"
 #include "objects/sticks/voxelise.h"
@@ -17,6 +18,7 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/scene/commands.h"
 #include "vpe/app/scene/level_cache.h"
+#include "vpe/app/scene/volume_command.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -31,6 +33,8 @@ struct ObjectArguments {
   std::string up = "auto";
   int voxels = 256;
   bool is_tight = false;
+  std::string colour;
+  double density = 1;
 };
 
 struct Extent {
@@ -119,15 +123,22 @@ void describe(const ObjectArguments& arguments, objects::ModelFile file, const C
 }
 
 void run_object(const ObjectArguments& arguments, const Common& common) {
-  check_outputs({{"-o", arguments.output, FileKind::kSticks}}, {arguments.model});
+  const bool is_volume = objects::is_volume_path(arguments.model);
+  check_outputs({{"-o", arguments.output, is_volume ? FileKind::kVolume : FileKind::kSticks}},
+                {arguments.model});
   const bool is_sticks = std::filesystem::path(arguments.model).extension() == ".sticks";
   if (is_sticks && !arguments.output.empty())
     throw UsageError(arguments.model + ": is a model of sticks already; name the model that it was made from");
   if (is_sticks) return describe_sticks(arguments, common);
   static const std::map<std::string, objects::UpAxis> kAxes{
       {"auto", objects::UpAxis::kAuto}, {"y", objects::UpAxis::kY}, {"z", objects::UpAxis::kZ}};
-  objects::ModelFile file =
-      objects::read_model_file(arguments.model, {.unit_m = arguments.unit_m, .up = kAxes.at(arguments.up)});
+  const objects::ModelFileOptions options{.unit_m = arguments.unit_m, .up = kAxes.at(arguments.up)};
+  if (is_volume)
+    return run_volume({arguments.model, arguments.output, options, arguments.colour, arguments.density},
+                      common);
+  if (!arguments.colour.empty() || arguments.density != 1)
+    throw UsageError("--colour and --density are for volumes (.volume, .vdb)");
+  objects::ModelFile file = objects::read_model_file(arguments.model, options);
   if (!common.quiet) {
     for (const std::string& note : file.notes)
       std::fprintf(stderr, "vpe: note: %s: %s\n", arguments.model.c_str(), note.c_str());
@@ -154,9 +165,13 @@ void add_object(CLI::App& program, Common& common) {
   CLI::App* command =
       add_command(program, "object",
                   "Describe a model of an object, or make a model of sticks (voxels) from it", common, true);
-  command->add_option("MODEL", arguments->model, "Model: .glb, .gltf, .obj, .ply, .stl or .sticks")->required();
-  command->add_option("-o,--output", arguments->output,
-                      "Model of sticks to write (.sticks); else the model is described");
+  command
+      ->add_option("MODEL", arguments->model,
+                   "Model: .glb, .gltf, .obj, .ply, .stl, .sticks, or a volume: .volume, .vdb (OpenVDB)")
+      ->required();
+  command->add_option(
+      "-o,--output", arguments->output,
+      "Model of sticks to write (.sticks), from a volume a .volume; else the model is described");
   command->add_option("--voxels", arguments->voxels, "Voxels along the longest side")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
@@ -165,15 +180,21 @@ void add_object(CLI::App& program, Common& common) {
       ->capture_default_str();
   command
       ->add_option("--up", arguments->up,
-                   "Axis of the file that points up; auto: y for glTF and OBJ, z for PLY and STL")
+                   "Axis of the file that points up; auto: y for glTF, OBJ and OpenVDB, z for PLY and STL")
       ->check(CLI::IsMember({"auto", "y", "z"}))
       ->capture_default_str();
   command->add_flag(
       "--tight", arguments->is_tight,
       "Leave out voxels whose centres lie outside: silhouettes are then no larger than the model's");
-  add_examples(*command, {{"what a model holds, and how far it can be simplified", "vpe object rover.glb"},
-                          {"a model of sticks of it", "vpe object rover.glb -o rover.sticks --voxels 512"},
-                          {"a drawing in millimetres", "vpe object part.stl --unit 0.001 -o part.sticks"}});
+  command->add_option("--colour", arguments->colour, "Colour of a volume in full light, rrggbb");
+  command->add_option("--density", arguments->density, "Factor on the extinction of a volume")
+      ->check(number_within(1e-9, 1e9))
+      ->capture_default_str();
+  add_examples(*command,
+               {{"what a model holds, and how far it can be simplified", "vpe object rover.glb"},
+                {"a model of sticks of it", "vpe object rover.glb -o rover.sticks --voxels 512"},
+                {"a drawing in millimetres", "vpe object part.stl --unit 0.001 -o part.sticks"},
+                {"a volume of OpenVDB", "vpe object smoke.vdb --density 0.2 --colour c8a078 -o smoke.volume"}});
   command->callback([arguments, &common] { run_object(*arguments, common); });
 }
 

@@ -6,6 +6,7 @@
 
 #include "objects/files/model_file.h"
 #include "objects/files/model_references.h"
+#include "objects/files/volume_model_file.h"
 #include "objects/scene/scatter.h"
 #include "objects/scene/track.h"
 #include "objects/sticks/stick_file.h"
@@ -50,7 +51,19 @@ bool is_unchanged(const Stamped& files) {
 
 }  // namespace
 
+std::shared_ptr<const objects::Model> SceneLibrary::volume(const std::string& name,
+                                                           const objects::VolumeFormula& formula) {
+  KnownVolume& known = volumes_[name];
+  if (known.model == nullptr || known.formula != formula) {
+    known.model = std::make_shared<const objects::Model>(
+        name, std::make_shared<const objects::VolumeModel>(objects::volume_by_formula(formula)));
+    known.formula = formula;
+  }
+  return known.model;
+}
+
 std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEntry& entry) {
+  if (entry.formula) return volume(entry.name, *entry.formula);
   KnownModel& known = known_[entry.file];
   if (known.model && known.unit_m == entry.unit_m && known.up == entry.up && is_unchanged(known.files))
     return known.model;
@@ -58,6 +71,10 @@ std::shared_ptr<const objects::Model> SceneLibrary::model(const objects::ModelEn
   if (entry.file.extension() == ".sticks") {
     known.model = std::make_shared<const objects::Model>(
         entry.name, std::make_shared<const objects::StickModel>(objects::read_stick_file(entry.file)));
+  } else if (objects::is_volume_path(entry.file)) {
+    known.model = std::make_shared<const objects::Model>(
+        entry.name, std::make_shared<const objects::VolumeModel>(
+                        objects::read_volume_model(entry.file, {.unit_m = entry.unit_m, .up = entry.up})));
   } else {
     objects::ModelFile file = objects::read_model_file(entry.file, {.unit_m = entry.unit_m, .up = entry.up});
     for (const std::string& note : file.notes) notes_.push_back(entry.file.string() + ": " + note);

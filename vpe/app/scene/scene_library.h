@@ -52,6 +52,10 @@ class SceneLibrary {
     objects::UpAxis up = objects::UpAxis::kAuto;
     std::shared_ptr<const objects::Model> model;
   };
+  struct KnownVolume {
+    objects::VolumeFormula formula;
+    std::shared_ptr<const objects::Model> model;
+  };
   // The first instance and the first region of interest of an entry of objects.
   struct Begin {
     std::size_t instance = 0;
@@ -68,6 +72,7 @@ class SceneLibrary {
 
   void read(const std::string& file);
   std::shared_ptr<const objects::Model> model(const objects::ModelEntry& entry);
+  std::shared_ptr<const objects::Model> volume(const std::string& name, const objects::VolumeFormula& formula);
   objects::GroundRadius ground(double exaggeration) const;
   std::uint32_t name_index(const std::string& name);
   void place_standing(double exaggeration);
@@ -83,6 +88,7 @@ class SceneLibrary {
   objects::Scene::Models models_;
   std::vector<std::string> names_{""};
   std::map<std::filesystem::path, KnownModel> known_;
+  std::map<std::string, KnownVolume> volumes_;  // by formula, by name
   std::optional<Standing> standing_;
   std::vector<std::string> notes_;
 };

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "objects/files/model_file.h"
+#include "objects/files/volume_model_file.h"
 #include "objects/files/scene_writer.h"
 #include "vpe/explore/objects/scene_saving.h"
 #include "vpe/window/objects/objects_panel.h"
@@ -128,8 +129,8 @@ void ObjectsPanel::take_model(const std::string& text) {
   file = whole_file(file);
   std::error_code unknown;
   if (!fs::exists(file, unknown)) return report(text + ": there is no such file");
-  if (file.extension() != ".sticks" && !objects::is_model_path(file))
-    return report(text + ": expected a model: .glb, .gltf, .obj, .ply, .stl or .sticks");
+  if (file.extension() != ".sticks" && !objects::is_model_path(file) && !objects::is_volume_path(file))
+    return report(text + ": expected a model: .glb, .gltf, .obj, .ply, .stl, .sticks, .volume or .vdb");
   const auto is_it = [&](const objects::ModelEntry& model) { return model.file == file; };
   const auto& models = editor_.models();
   const auto known = std::find_if(models.begin(), models.end(), is_it);
