@@ -152,8 +152,15 @@ void SquarePainter::see_pixel(const SubSquare& part, int x, int y) {
   const auto range_m = static_cast<double>(ground_.at(x, y));
   if (!part.near_to_far.empty() || !part.volumes.empty())
     seen.object = object_at(part, ray, range_m, seen.front);
-  if (part.may_be_shaded && seen.object.over.w < 1 && !std::isinf(range_m))
-    seen.light = static_cast<float>(image_.before_sun.light_at(ray.origin_m + range_m * ray.direction));
+  see_light(part, x, y);
+}
+
+void SquarePainter::see_light(const SubSquare& part, int x, int y) {
+  SeenPixel& seen = seen_at(x, y);
+  const auto range_m = static_cast<double>(ground_.at(x, y));
+  if (!part.may_be_shaded || seen.object.over.w >= 1 || std::isinf(range_m)) return;
+  const ObjectRay ray = ray_of(x, y, {0, 0});
+  seen.light = static_cast<float>(image_.before_sun.light_at(ray.origin_m + range_m * ray.direction));
 }
 
 // Most pixels beside one are in the same square.
@@ -193,6 +200,11 @@ void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& am
       SubSquare part =
           part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
       if (part.near_to_far.empty() && part.volumes.empty() && !part.may_be_shaded) continue;
+      if (is_sparse(part)) {
+        see_sparsely(part);
+        parts_.push_back(std::move(part));
+        continue;
+      }
       for (int j = part.square.y0; j < part.square.y1; ++j) {
         for (int i = part.square.x0; i < part.square.x1; ++i) see_pixel(part, i, j);
       }

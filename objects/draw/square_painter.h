@@ -106,6 +106,10 @@ class SquarePainter {
   glm::dvec4 smooth_sample(const SubSquare& part, int x, int y);
   const SeenPixel* beside(int x, int y, const Seen& seen) const;
   void see_pixel(const SubSquare& part, int x, int y);
+  void see_light(const SubSquare& part, int x, int y);
+  bool is_sparse(const SubSquare& part) const;
+  void see_sparsely(const SubSquare& part);
+  std::optional<ObjectColour> between(const SubSquare& part, int x, int y) const;
   void paint_pixel(const SubSquare& part, int x, int y, const Seen& seen, vpe::core::Frame& frame);
   void paint_small(const Seen& seen, vpe::core::Frame& frame);
   bool paint_by_area(const PlacedObject& object, const Seen& seen, vpe::core::Frame& frame);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "objects/volumes/volume_formulas.h"
 #include "tests/objects/composer_fixture.h"
 #include "tests/objects/volumes/volume_shapes.h"
 #include "vpe/core/appearance/shading.h"
@@ -398,6 +399,61 @@ TEST(ComposerVolume, PanoramasShowVolumes) {
     }
     EXPECT_GT(inside, 300);
   }
+}
+
+// Images have rays in some pixels of smooth volumes alone, those where single pixels are wanted in all.
+TEST(ComposerVolume, FewerRaysShowWhatAllRaysShow) {
+  core::DrawRequest r = request_at(10);
+  r.settings.mode = core::Mode::kTextured;
+  r.settings.lod_tolerance_px = 1;
+  VolumeFormula devil;
+  devil.height_m = 16;
+  devil.radius_m = 4;
+  devil.voxels = 64;
+  Instance ball = instance_before(r, {4, -3, 26});
+  ball.model = 1;
+  const Scene scene(
+      {volume_model(level_by_formula(devil), devil.colour), volume_model(ball_level(6, 0.12F, 30))},
+      {instance_before(r, {-3, -9, 22}), ball});
+  core::Frame some = paper_frame(r);
+  for (int y = 0; y < some.height; ++y) {
+    for (int x = 0; x < some.width; ++x) {
+      const glm::dvec3 d = ray_at(r, x, y);
+      if (d.x < -0.1) some.range_m[at(some, x, y)] = static_cast<float>(-10 / d.x);
+    }
+  }
+  const core::Frame empty = some;
+  core::Frame all = some;
+  const OpenGround ground;
+  draw(scene, r, some, &ground);
+  const std::vector<std::uint8_t> wanted(all.colour.size(), 1);
+  draw(scene, r, all, &ground, 1, wanted);
+  int different = 0;
+  int painted = 0;
+  int sum = 0;
+  for (std::size_t n = 0; n < all.colour.size(); ++n) {
+    const auto [a, b] = std::pair(some.colour[n], all.colour[n]);
+    const int most = std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+    EXPECT_LE(most, 8) << n;  // twice the step from which on each pixel has a ray
+    sum += most;
+    different += a == b ? 0 : 1;
+    painted += b == kPaper ? 0 : 1;
+    ASSERT_EQ(std::isinf(some.range_m[n]), std::isinf(all.range_m[n])) << n;
+    if (!std::isinf(all.range_m[n])) {
+      EXPECT_NEAR(some.range_m[n], all.range_m[n], 0.02 * static_cast<double>(all.range_m[n])) << n;
+    }
+  }
+  EXPECT_GT(painted, 4000);
+  EXPECT_GT(different, 0);  // else this test compares nothing
+  EXPECT_LT(different, painted / 3);
+  EXPECT_LT(sum, painted / 10);
+  // Exact images have all rays.
+  r.settings.lod_tolerance_px = 0;
+  some = empty;
+  draw(scene, r, some, &ground);
+  all = empty;
+  draw(scene, r, all, &ground, 1, wanted);
+  EXPECT_EQ(some.colour, all.colour);
 }
 
 // A camera in a cloud sees what lies before it.
