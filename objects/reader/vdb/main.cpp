@@ -3,35 +3,23 @@
 // program for such files, after it has set the limits on memory and time: the library takes longer to load than most models
 // take to read.
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdlib>
 #include <new>
 #include <span>
 #include <string>
 
+#include "objects/files/child_limits.h"
 #include "objects/files/mesh_stream.h"
 #include "objects/reader/refusal.h"
 #include "objects/reader/vdb/vdb_reader.h"
 
 namespace {
 
-bool send(std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-  }
-  return true;
-}
-
 int refuse(const std::string& reason, const std::string& advice) {
   objects::MeshStream stream;
   stream.error = reason;
   stream.advice = advice;
-  objects::write_mesh_stream(stream, [](std::span<const std::uint8_t> bytes) { send(bytes); });
+  objects::write_mesh_stream(stream, [](std::span<const std::uint8_t> bytes) { objects::send_output(bytes); });
   return 1;
 }
 
@@ -45,7 +33,7 @@ int main(int count, char** words) {
   options.up = up == "z" ? objects::UpAxis::kZ : up == "y" ? objects::UpAxis::kY : objects::UpAxis::kAuto;
   if (!(options.unit_m > 0)) return 2;
   try {
-    return send(objects::read_with_openvdb(words[1], options)) ? 0 : 1;
+    return objects::send_output(objects::read_with_openvdb(words[1], options)) ? 0 : 1;
   } catch (const objects::Refusal& refusal) {
     return refuse(refusal.what(), refusal.advice());
   } catch (const std::bad_alloc&) {

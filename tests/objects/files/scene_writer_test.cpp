@@ -94,7 +94,8 @@ class AnyScene {
     for (std::size_t n = files; n < models; ++n) {
       ModelEntry volume;
       volume.name = name() + std::to_string(n);
-      VolumeFormula formula{static_cast<VolumeKind>(below(3)), number({1, 100}), number({1, 40}), number({0.1, 50})};
+      VolumeFormula formula{static_cast<VolumeKind>(below(3)), number({1, 100}), number({1, 40}),
+                            number({0.1, 50})};
       if (formula.kind != VolumeKind::kCloud) formula.lean_m = number({0, 40});
       formula.colour = {static_cast<std::uint8_t>(below(256)), static_cast<std::uint8_t>(below(256)),
                         static_cast<std::uint8_t>(below(256)), 255};

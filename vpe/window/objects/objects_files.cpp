@@ -4,8 +4,8 @@
 #include <exception>
 
 #include "objects/files/model_file.h"
-#include "objects/files/volume_model_file.h"
 #include "objects/files/scene_writer.h"
+#include "objects/files/volume_model_file.h"
 #include "vpe/explore/objects/scene_saving.h"
 #include "vpe/window/objects/objects_panel.h"
 #include "vpe/window/panels/file_names.h"
