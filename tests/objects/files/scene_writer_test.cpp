@@ -94,9 +94,11 @@ class AnyScene {
     for (std::size_t n = files; n < models; ++n) {
       ModelEntry volume;
       volume.name = name() + std::to_string(n);
-      VolumeFormula formula{static_cast<VolumeKind>(below(3)), number({1, 100}), number({1, 40}),
-                            number({0.1, 50})};
-      if (formula.kind != VolumeKind::kCloud) formula.lean_m = number({0, 40});
+      VolumeFormula formula;
+      do {
+        formula = {static_cast<VolumeKind>(below(3)), number({1, 100}), number({1, 40}), number({0.1, 50})};
+        if (formula.kind != VolumeKind::kCloud) formula.lean_m = number({0, 40});
+      } while (!check(formula).empty());
       formula.colour = {static_cast<std::uint8_t>(below(256)), static_cast<std::uint8_t>(below(256)),
                         static_cast<std::uint8_t>(below(256)), 255};
       formula.seed = static_cast<std::uint64_t>(below(1'000'000));
