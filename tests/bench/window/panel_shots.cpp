@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
   camera.rest();
   camera.shoot("start");
   if (!window.widgets().places().contains("View")) camera.click("\u2261##side");
-  for (const char* tab : {"View", "Places", "Flight", "Measure", "Draw", "Look", "Detail"})
+  for (const char* tab : {"View", "Places", "Flight", "Measure", "Draw", "Objects", "Look", "Detail"})
     if (camera.click(tab)) camera.shoot(tab);
   const std::vector<std::pair<std::string, std::string>> by_key{{"help", "F1"}, {"map", "Tab"}};
   for (const auto& [name, key] : by_key) {
