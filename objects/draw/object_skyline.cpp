@@ -1,6 +1,7 @@
 #include "objects/draw/object_skyline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -72,15 +73,21 @@ std::optional<ObjectTop> ObjectSkyline::above(double azimuth_deg, double elevati
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.span.high_deg != b.span.high_deg ? a.span.high_deg > b.span.high_deg : a.instance < b.instance;
   });
+  LevelRule finest;
+  finest.camera_m = camera_m_;
+  finest.least_ray_px = 0;
+  const ObjectRays rays(scene_, finest);
   std::optional<ObjectTop> top;
   double least_deg = elevation_deg;
   for (const Candidate& candidate : candidates) {
     if (candidate.span.high_deg <= least_deg) break;
     const double low_deg = std::max(candidate.span.low_deg, least_deg);
     const double step_deg = (candidate.span.high_deg - low_deg) / kSteps;
-    const auto met_at = [&](double at_deg) {
-      return first_of(scene_, candidate.instance, {camera_m_, plane.ray(at_deg)},
-                      std::numeric_limits<double>::infinity());
+    const std::array<PlacedObject, 1> object{rays.placed(candidate.instance)};
+    const auto met_at = [&](double at_deg) -> std::optional<double> {
+      const auto seen =
+          first_among(object, {camera_m_, plane.ray(at_deg)}, std::numeric_limits<double>::infinity());
+      return seen ? std::optional(seen->range_m) : std::nullopt;
     };
     double clear_deg = candidate.span.high_deg;
     for (int step = 0; step <= kSteps; ++step) {

@@ -9,10 +9,7 @@
 
 namespace objects {
 
-namespace {
-
-// Objects are sorted from near to far.
-std::optional<SeenObject> first_among(const std::vector<PlacedObject>& objects, const ObjectRay& ray,
+std::optional<SeenObject> first_among(std::span<const PlacedObject> objects, const ObjectRay& ray,
                                       double until_m) {
   RayResult met;
   nearest_object(objects, all_of(objects), ray, until_m, 0, met);
@@ -54,11 +51,10 @@ std::optional<SeenObject> first_among(const std::vector<PlacedObject>& objects, 
   return seen;
 }
 
-}  // namespace
-
 std::optional<SeenObject> first_object(const Scene& scene, const ObjectRay& ray, double until_m) {
   LevelRule rule;
   rule.camera_m = ray.origin_m;
+  rule.least_ray_px = 0;
   const ObjectRays rays(scene, rule);
   std::vector<PlacedObject> objects;
   scene.visit(
@@ -68,24 +64,11 @@ std::optional<SeenObject> first_object(const Scene& scene, const ObjectRay& ray,
         if (along < -ball.radius_m || along - ball.radius_m > until_m) return false;
         return glm::length(to - along * ray.direction) <= ball.radius_m;
       },
-      [&](std::uint32_t n) {
-        objects.push_back(rays.placed(n));
-        objects.back().by_rays = true;
-      });
+      [&](std::uint32_t n) { objects.push_back(rays.placed(n)); });
   std::sort(objects.begin(), objects.end(), [](const PlacedObject& a, const PlacedObject& b) {
     return a.near_m != b.near_m ? a.near_m < b.near_m : a.instance < b.instance;
   });
   return first_among(objects, ray, until_m);
-}
-
-std::optional<double> first_of(const Scene& scene, std::uint32_t instance, const ObjectRay& ray,
-                               double until_m) {
-  LevelRule rule;
-  rule.camera_m = ray.origin_m;
-  std::vector<PlacedObject> objects{ObjectRays(scene, rule).placed(instance)};
-  objects.front().by_rays = true;
-  const std::optional<SeenObject> seen = first_among(objects, ray, until_m);
-  return seen ? std::optional(seen->range_m) : std::nullopt;
 }
 
 }  // namespace objects

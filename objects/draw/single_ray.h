@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "objects/draw/object_rays.h"
 
@@ -20,9 +21,9 @@ struct SeenObject {
 // surfaces count where the opacity on the way passes a half. Pure.
 std::optional<SeenObject> first_object(const Scene& scene, const ObjectRay& ray, double until_m);
 
-// Returns where a ray meets one object before until_m, metres along the ray, as first_object() does; nullopt if it does
-// not. Pure.
-std::optional<double> first_of(const Scene& scene, std::uint32_t instance, const ObjectRay& ray,
-                               double until_m);
+// Returns the first object of a list that a ray meets, as first_object() does. The list is sorted from near to far, as
+// ObjectRays::in_cone() sorts it; of its objects those count that are drawn by rays. Pure.
+std::optional<SeenObject> first_among(std::span<const PlacedObject> objects, const ObjectRay& ray,
+                                      double until_m);
 
 }  // namespace objects

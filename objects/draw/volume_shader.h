@@ -29,7 +29,7 @@ class VolumeShader {
   bool has_shown(std::uint32_t object) const { return has_shown_[object] != 0; }
 
  private:
-  // What a volume adds along a stretch of a ray.
+  // Holds what a volume adds along a stretch of a ray.
   struct Veil {
     double depth = 0;
     double lit = 0;      // mean factor of light

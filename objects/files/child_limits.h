@@ -1,4 +1,4 @@
-// What programs of this project do that run in processes of their own (child_process.h): limits on themselves, and output.
+// Limits and output of programs of this project that run in processes of their own (child_process.h).
 //
 // Typical usage:
 //   limit_this_process(2, 120);

@@ -42,17 +42,16 @@ class FoundFiles {
   std::set<fs::path> files_;
 };
 
-std::string text_of(const fs::path& file) {
+std::vector<std::uint8_t> bytes_of(const fs::path& file) {
   try {
-    const std::vector<std::uint8_t> bytes = vpe::base::read_file(file, kMostBytes);
-    return {bytes.begin(), bytes.end()};
+    return vpe::base::read_file(file, kMostBytes);
   } catch (const std::runtime_error&) {
     return {};
   }
 }
 
 void add_of_gltf(const fs::path& model, FoundFiles& found) {
-  const nlohmann::json document = nlohmann::json::parse(text_of(model), nullptr, false);
+  const nlohmann::json document = nlohmann::json::parse(bytes_of(model), nullptr, false);
   if (!document.is_object()) return;
   for (const char* list : {"buffers", "images"}) {
     const auto entries = document.find(list);
@@ -68,7 +67,8 @@ void add_of_gltf(const fs::path& model, FoundFiles& found) {
 
 // Calls take(key, rest) for each line of words.
 template <class Take>
-void each_line(std::string_view text, const Take& take) {
+void each_line(const std::vector<std::uint8_t>& bytes, const Take& take) {
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::string_view kBlanks = " \t\r";
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
@@ -86,12 +86,12 @@ void each_line(std::string_view text, const Take& take) {
 
 void add_of_obj(const fs::path& model, FoundFiles& found) {
   std::set<fs::path> materials;
-  each_line(text_of(model), [&](std::string_view key, std::string_view rest) {
+  each_line(bytes_of(model), [&](std::string_view key, std::string_view rest) {
     if (key == "mtllib") materials.insert(found.add(std::string(rest)));
   });
   for (const fs::path& file : materials) {
     if (file.empty()) continue;
-    each_line(text_of(file), [&](std::string_view key, std::string_view rest) {
+    each_line(bytes_of(file), [&](std::string_view key, std::string_view rest) {
       if (!key.starts_with("map_")) return;
       // Options stand before the name, which may have blanks.
       if (!found.add(std::string(rest)).empty()) return;

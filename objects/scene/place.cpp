@@ -54,7 +54,7 @@ mars::LocalFrame headed_frame(mars::LonLat place, double heading_deg) {
   return {axes.right, axes.forward, axes.up};
 }
 
-// Where a path is at a time.
+// Describes where a path is at a time.
 struct PathState {
   mars::LonLat place;
   mars::LocalFrame frame;  // level; its north is the heading

@@ -1,4 +1,4 @@
-// Which object of a scene file a flight moves.
+// Objects of a scene file that a flight moves.
 #pragma once
 
 #include <cstddef>

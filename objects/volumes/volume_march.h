@@ -137,7 +137,7 @@ void march(const VolumeLevel& level, const VolumeRay& ray, double begin, double 
     end = std::min(end, std::max(a, b));
   }
   if (!(begin < end)) return;
-  // Of a stored 1 along t = 1, with the third of Simpson's rule.
+  // Is the depth of a stored 1 along t = 1, with the third of Simpson's rule.
   const double unit = glm::length(ray.direction) * static_cast<double>(level.unit_per_m) / 6;
   const glm::ivec3 bricks(level.bricks(0), level.bricks(1), level.bricks(2));
   GridWalk walk(o, d, inverse, begin, kCells, glm::ivec3(0), bricks);

@@ -61,8 +61,8 @@ TEST_F(ObjectSkylineTest, ABallEndsAtItsTangent) {
       const double a = (50 + off_deg) * kDegree;
       const glm::dvec3 ahead = std::cos(a) * frame_.north + std::sin(a) * frame_.east;
       const double e = elevation_deg * kDegree;
-      return first_of(scene, 0, {camera_m_, std::cos(e) * ahead + std::sin(e) * frame_.up},
-                      std::numeric_limits<double>::infinity())
+      return first_object(scene, {camera_m_, std::cos(e) * ahead + std::sin(e) * frame_.up},
+                          std::numeric_limits<double>::infinity())
           .has_value();
     };
     EXPECT_TRUE(meets_at(top->elevation_deg));

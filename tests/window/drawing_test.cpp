@@ -27,15 +27,6 @@ class DrawingTest : public ExploreWindowTest {
                          ray * window_->session().ground().cast_m(view.camera.position_m, ray));
   }
 
-  void with_control(const std::string& name, bool shift = false) {
-    robot_->key_down("Control_L");
-    if (shift) robot_->key_down("Shift_L");
-    key(name);
-    if (shift) robot_->key_up("Shift_L");
-    robot_->key_up("Control_L");
-    iterate(3);
-  }
-
   void draw_triangle(double y = 200) {
     click("Polygon");
     click(600, y);

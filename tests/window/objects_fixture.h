@@ -85,14 +85,6 @@ class ObjectsPanelTest : public ExploreWindowTest {
            glm::dvec2(left(), 0);
   }
 
-  void with_control(const std::string& name, bool shift = false) {
-    robot_->key_down("Control_L");
-    if (shift) robot_->key_down("Shift_L");
-    key(name);
-    if (shift) robot_->key_up("Shift_L");
-    robot_->key_up("Control_L");
-    iterate(3);
-  }
   // Enters a text in a field; beside it are buttons and the label.
   void enter(const std::string& label, const std::string& text) {
     ASSERT_TRUE(waits_for(label)) << label;

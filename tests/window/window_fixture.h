@@ -74,6 +74,14 @@ class WindowTest : public testing::Test {
     robot_->key(name);
     iterate(3);
   }
+  void with_control(const std::string& name, bool shift = false) {
+    robot_->key_down("Control_L");
+    if (shift) robot_->key_down("Shift_L");
+    key(name);
+    if (shift) robot_->key_up("Shift_L");
+    robot_->key_up("Control_L");
+    iterate(3);
+  }
 
   test_support::TempDir folder_;
   Screen screen_{2600, 1500};

@@ -1,4 +1,4 @@
-// How a flight moves the objects of a scene.
+// Ways of objects of a scene over the time of a flight.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What images of a scene depend on, kept as long as its files do not change: a film asks for it for each frame.
+// Checksums of scenes and their models, kept as long as the files do not change: a film asks for them for each frame.
 //
 // Typical usage:
 //   SceneDigests scenes;

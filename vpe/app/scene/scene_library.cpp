@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 
 #include "objects/files/model_file.h"
@@ -155,9 +156,8 @@ void SceneLibrary::place_standing(double exaggeration) {
 }
 
 void SceneLibrary::move(const core::ObjectTrack& track, double time_s, double exaggeration,
-                        std::vector<objects::PathEntry>& paths,
-                        std::vector<std::optional<objects::Instance>>& instances,
-                        std::vector<core::InterestRegion>& interest) const {
+                        std::vector<objects::PathEntry>& paths, std::vector<objects::Instance>& instances,
+                        std::vector<std::size_t>& hidden, std::vector<core::InterestRegion>& interest) const {
   const objects::TrackTarget target = objects::track_target(entries_, track);
   const bool is_shown = core::is_shown(track, time_s);
   if (target.is_path) {
@@ -170,9 +170,9 @@ void SceneLibrary::move(const core::ObjectTrack& track, double time_s, double ex
     return;
   }
   const Begin begin = standing_->begins[target.entry];
-  std::optional<objects::Instance>& instance = instances[begin.instance];
+  objects::Instance& instance = instances[begin.instance];
   if (!is_shown) {
-    instance.reset();
+    hidden.push_back(begin.instance);
   } else if (!track.points.empty()) {
     const objects::ObjectEntry& entry = entries_.objects[target.entry];
     const objects::Placing placing =
@@ -180,8 +180,8 @@ void SceneLibrary::move(const core::ObjectTrack& track, double time_s, double ex
     const double size_m = static_cast<double>(models_[entry.model]->ball().radius_m) * placing.scale;
     objects::Instance moved =
         objects::place_instance(placing, size_m, surface_.planet_radius_m(), ground(exaggeration));
-    moved.model = instance->model;
-    moved.name = instance->name;
+    moved.model = instance.model;
+    moved.name = instance.name;
     instance = moved;
     if (entry.interest_levels != 0)
       interest[begin.interest] = region_around(placing.place, size_m, entry.interest_levels);
@@ -194,18 +194,16 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
   if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
   const bool has_tracks = tracks != nullptr && !tracks->empty();
   if (standing_->scene && !has_tracks) return {standing_->scene, standing_->interest};
-  std::vector<std::optional<objects::Instance>> placed(standing_->instances.begin(),
-                                                       standing_->instances.end());
+  std::vector<objects::Instance> instances = standing_->instances;
   std::vector<core::InterestRegion> interest = standing_->interest;
   std::vector<objects::PathEntry> paths = entries_.paths;
+  std::vector<std::size_t> hidden;
   if (has_tracks) {
-    for (const core::ObjectTrack& track : *tracks) move(track, time_s, exaggeration, paths, placed, interest);
+    for (const core::ObjectTrack& track : *tracks)
+      move(track, time_s, exaggeration, paths, instances, hidden, interest);
   }
-  std::vector<objects::Instance> instances;
-  instances.reserve(placed.size() + paths.size());
-  for (const std::optional<objects::Instance>& instance : placed) {
-    if (instance) instances.push_back(*instance);
-  }
+  std::ranges::sort(hidden, std::greater());
+  for (const std::size_t n : hidden) instances.erase(instances.begin() + static_cast<std::ptrdiff_t>(n));
   for (const objects::PathEntry& path : paths) {
     if (path.points.empty()) continue;
     objects::Instance moving = objects::path_instance(path, time_s, ground(exaggeration));

@@ -76,10 +76,10 @@ class SceneLibrary {
   objects::GroundRadius ground(double exaggeration) const;
   std::uint32_t name_index(const std::string& name);
   void place_standing(double exaggeration);
-  // Moves or hides what a track names. A path that is hidden has no points then.
+  // Moves what a track names, or hides it: an instance by adding its number to `hidden`, a path by taking its points.
   void move(const core::ObjectTrack& track, double time_s, double exaggeration,
-            std::vector<objects::PathEntry>& paths, std::vector<std::optional<objects::Instance>>& instances,
-            std::vector<core::InterestRegion>& interest) const;
+            std::vector<objects::PathEntry>& paths, std::vector<objects::Instance>& instances,
+            std::vector<std::size_t>& hidden, std::vector<core::InterestRegion>& interest) const;
 
   const paging::Surface& surface_;
   std::optional<base::FileStamp> stamp_;

@@ -1,4 +1,4 @@
-// Where the items of a scene are: balls around them, and the one that a ray meets.
+// Balls around the items of a scene, and the item that a ray meets.
 #pragma once
 
 #include <cstddef>
