@@ -29,7 +29,7 @@ struct Layer {
 
 // Every module that a room of vpe/app may use.
 const std::vector<std::string> kBelowApp{
-    "vpe/base",    "mars",   "vpe/core",  "cull",     "lod",         "objects",    "paging",     "scripts",
+    "vpe/base",    "mars",   "vpe/core",  "cull",     "lod",         "objects",    "relief",     "paging",     "scripts",
     "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/warp"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
@@ -55,6 +55,7 @@ const std::vector<Layer>& layers() {
       {"lod/tree", "lod", {"vpe/base", "mars", "vpe/core", "cull"}},
       {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
+      {"relief", "relief", {"vpe/base", "mars", "vpe/core"}},
       {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
       {"objects/volumes", "objects", {"vpe/base", "mars", "vpe/core", "objects/model"}},
       {"objects/files",
