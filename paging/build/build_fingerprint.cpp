@@ -91,32 +91,42 @@ std::string shortened(const std::string& value) {
 
 }  // namespace
 
-std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& meta) {
-  using vpe::base::format_number;
+std::string build_settings(const BuildOptions& options) {
   std::string text = "program = vpe " VPE_VERSION " builder " + std::to_string(kBuilderRevision) + "\n";
-  const auto rows = to_rows(meta);
-  for (const auto& [key, value] : rows)
-    if (key != "checksum" && key != "sources" && key != "image_sources") text += key + " = " + value + "\n";
   const auto add = [&](const std::string& label, double value) {
-    text += label + " = " + format_number(value) + "\n";
+    text += label + " = " + vpe::base::format_number(value) + "\n";
   };
-  add("base spacing", options.base_spacing_m);
-  add("finest spacing", options.finest_spacing_m);
   add("mesh ratio", options.mesh_ratio);
-  add("finest image", options.finest_image_m);
   add("image quality", options.image_quality);
   add("compared posts", static_cast<double>(options.resampling_posts));
-  std::string regions;
+  return text;
+}
+
+std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& meta) {
+  using vpe::base::format_number;
+  std::string text = build_settings(options);
+  text += "base spacing = " + format_number(options.base_spacing_m) + "\n";
+  text += "finest spacing = " + format_number(options.finest_spacing_m) + "\n";
+  text += "finest image = " + format_number(options.finest_image_m) + "\n";
+  text += "regions =";
   for (const Region& r : options.regions) {
-    regions += " " + format_number(r.west_deg) + "," + format_number(r.south_deg) + "," +
-               format_number(r.east_deg) + "," + format_number(r.north_deg);
+    text += " " + format_number(r.west_deg) + "," + format_number(r.south_deg) + "," +
+            format_number(r.east_deg) + "," + format_number(r.north_deg);
   }
-  text += "regions =" + regions + "\n";
+  text += "\n";
+  const auto rows = to_rows(meta);
+  for (const auto& [key, value] : rows) {
+    if (key != kMetaChecksumKey && key != "sources" && key != "image_sources" && key != kBuildSettingsKey &&
+        key != kArgumentsKey)
+      text += key + " = " + value + "\n";
+  }
   append_sources(text, "elevation source", rows.at("sources"), meta);
   append_sources(text, "image source", rows.at("image_sources"), meta);
   if (!options.shard.is_all()) text += fingerprint_line(options.shard);
   return text;
 }
+
+std::string patch_line(const std::string& identity) { return "begun with the tiles of " + identity + "\n"; }
 
 std::string portable_fingerprint(const std::string& fingerprint) {
   std::string text;

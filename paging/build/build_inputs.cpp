@@ -109,6 +109,8 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
       options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
   meta.fill_m = std::round(mean_height(elevation, meta) / meta.quantum_m) * meta.quantum_m;
   for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
+  meta.build_settings = build_settings(options);
+  meta.arguments = options.arguments;
   if (image != nullptr) meta.image_sources = image->infos();
   for (auto* sources : {&meta.sources, &meta.image_sources})
     for (mars::SourceInfo& s : *sources) s.content = content_of(s);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "paging/build/build_plan.h"
 #include "paging/build/builder.h"
+#include "paging/plan/build_plan.h"
 
 namespace paging {
 
@@ -17,6 +17,14 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
 // Returns the build fingerprint: everything that the content of a planet file is a function of, as lines of text, and
 // paths and times of the sources. Equal fingerprints make equal tiles.
 std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& described);
+
+// Returns what the content of a tile depends on beside the sources and what meta says of the planet, as lines of text:
+// version and options. It is PlanetMeta::build_settings. Spacings and regions only say which tiles there are.
+std::string build_settings(const BuildOptions& options);
+
+// Returns the line that the fingerprint of a build from a finished planet has besides. Tiles of the file at `identity`
+// stand in its partial file, so no other build may continue it.
+std::string patch_line(const std::string& identity);
 
 // Returns the last line of the fingerprint of a divided build. The lines before it are those of the undivided
 // one.

@@ -32,15 +32,20 @@ std::unique_ptr<Meters> meters_of(const StoredTiles& stored, const SharedAncesto
 
 std::map<lod::TileKey, InnerTerms> measure_chunk(const StoredTiles& stored,
                                                  const SharedAncestors& shared_ancestors,
+                                                 const std::set<lod::TileKey>& kept,
                                                  std::span<const lod::TileKey> leaves) {
   std::map<lod::TileKey, InnerTerms> found;
   // Neighbours in Morton order share most ancestors: keep the meters of the last leaf's ancestors, by level.
   std::vector<std::unique_ptr<Meters>> meters;
   lod::TileKey last = leaves.front();
   for (const lod::TileKey& leaf : leaves) {
+    // All above a tile that is made again are made again: the kept ancestors of a leaf are its deepest ones.
+    int open_levels = leaf.level;
+    while (open_levels > 0 && kept.contains(lod::ancestor(leaf, open_levels - 1))) --open_levels;
+    if (open_levels == 0) continue;
     const lod::FinePosts posts(read_posts(stored, leaf), stored.meta.radius_m);
     meters.resize(std::max(meters.size(), static_cast<std::size_t>(leaf.level)));
-    for (int level = 0; level < leaf.level; ++level) {
+    for (int level = 0; level < open_levels; ++level) {
       const lod::TileKey key = lod::ancestor(leaf, level);
       auto& meter = meters[static_cast<std::size_t>(level)];
       const bool same = meter && level <= last.level && lod::ancestor(last, level) == key;

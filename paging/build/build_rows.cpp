@@ -42,8 +42,13 @@ Node recall_leaf(const PlanetMeta& meta, const NodeRow& row) {
 }
 
 Node recall_inner(const Nodes& nodes, const NodeRow& row) {
-  Node node = node_of(row);
+  Node node = recall_measured(nodes, row);
   node.posts_terms = node.variants.front().terms = {};  // measured again, or taken from checkpoints
+  return node;
+}
+
+Node recall_measured(const Nodes& nodes, const NodeRow& row) {
+  Node node = node_of(row);
   for (int c = 0; c < 4; ++c) {
     const double lowest = nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;
     node.lowest_m = c == 0 ? lowest : std::min(node.lowest_m, lowest);

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "lod/mesh/mesh.h"
-#include "paging/build/build_plan.h"
 #include "paging/build/builder.h"
 #include "paging/build/planet_writer.h"
+#include "paging/plan/build_plan.h"
 #include "vpe/base/object_pool.h"
 
 namespace paging {
@@ -90,11 +90,14 @@ SharedAncestor sample_shared_ancestor(const SampleInputs& sampling, const MeshIn
 // returns. An inner tile's children must be in `nodes`.
 Node recall_leaf(const PlanetMeta& meta, const NodeRow& row);
 Node recall_inner(const Nodes& nodes, const NodeRow& row);
+// Does the same for an inner tile whose errors are final.
+Node recall_measured(const Nodes& nodes, const NodeRow& row);
 
-// Computes the largest errors of every ancestor's mesh and posts over some finest tiles. Ancestors are taken
-// from `shared_ancestors`, else as stored.
+// Computes the largest errors of every ancestor's mesh and posts over some finest tiles, except for ancestors among
+// `kept`, whose errors are known. Ancestors are taken from `shared_ancestors`, else as stored.
 std::map<lod::TileKey, InnerTerms> measure_chunk(const StoredTiles& stored,
                                                  const SharedAncestors& shared_ancestors,
+                                                 const std::set<lod::TileKey>& kept,
                                                  std::span<const lod::TileKey> leaves);
 
 // Converts the result of measure_chunk() to bytes and back; unpack_terms() throws CodecError.

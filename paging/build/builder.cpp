@@ -22,21 +22,29 @@ namespace paging {
 
 namespace {
 
+const std::set<lod::TileKey> kNoTiles;
+
 // Runs the stages of a build in their order; each skips what an earlier build has finished.
 class Build {
  public:
   Build(const BuildOptions& options, const mars::ElevationSource& elevation, const mars::ImageSource* image,
-        const PlanetMeta& meta, BuildPlan plan, const ProgressFunction& progress)
+        const PlanetMeta& meta, BuildPlan plan, std::vector<lod::TileKey> images,
+        std::optional<PatchStart> patch, const ProgressFunction& progress)
       : options_(options),
         elevation_(elevation),
         image_(image),
         meta_(meta),
         plan_(std::move(plan)),
         shard_(shard_plan(plan_, options.shard)),
-        writer_(options.output, build_fingerprint(options, meta), options.commit_s),
+        images_(std::move(images)),
+        patch_(std::move(patch)),
+        writer_(options.output,
+                build_fingerprint(options, meta) + (patch_ ? patch_line(patch_->identity) : std::string()),
+                options.commit_s, patch_ ? &*patch_ : nullptr),
         stages_(progress),
         threads_(options.threads > 0 ? options.threads : vpe::base::default_threads()) {
     stages_.replaced = writer_.start() == PartialFileStart::kReplaced;
+    stages_.patched = patch_ && writer_.start() != PartialFileStart::kContinued;
   }
 
   BuildSummary run() {
@@ -88,7 +96,9 @@ class Build {
         if (row == stored.end()) {
           open.push_back(inner[at]);
         } else {
-          nodes_.emplace(inner[at], recall_inner(nodes_, row->second));
+          const bool is_final = patch_ && patch_->kept.contains(inner[at]);
+          nodes_.emplace(inner[at],
+                         is_final ? recall_measured(nodes_, row->second) : recall_inner(nodes_, row->second));
         }
       }
       build_each(open, [this](const lod::TileKey& key) { return build_inner(meshing_, stored_, key); });
@@ -116,7 +126,7 @@ class Build {
     std::mutex merge;
     vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
       const std::size_t first = open[n] * kChunk;
-      const auto found = measure_chunk(stored_, shared_ancestors_,
+      const auto found = measure_chunk(stored_, shared_ancestors_, patch_ ? patch_->kept : kNoTiles,
                                        leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
       writer_.put_checkpoint(static_cast<std::int64_t>(open[n]), pack_terms(found));
       {
@@ -155,8 +165,7 @@ class Build {
 
   // Stage 4 makes the pyramid of the image.
   void build_images() {
-    std::vector<lod::TileKey> images =
-        image_ != nullptr ? plan_images(options_, *image_) : std::vector<lod::TileKey>();
+    std::vector<lod::TileKey>& images = images_;
     const auto count = static_cast<std::int64_t>(images.size());
     images.erase(images.begin() + options_.shard.end(count), images.end());
     images.erase(images.begin(), images.begin() + options_.shard.begin(count));
@@ -185,7 +194,7 @@ class Build {
       meta_.highest_radius_m = std::max(meta_.highest_radius_m, meta_.radius_m + node.max_m);
       meta_.finest_level = std::max(meta_.finest_level, key.level);
       for (const lod::MeshVariant& v : node.variants) summary.mesh_triangles += v.triangles;
-      if (node.inner) measured.push_back(to_row(key, node));
+      if (node.inner && !(patch_ && patch_->kept.contains(key))) measured.push_back(to_row(key, node));
     }
     writer_.replace_nodes(measured);
 
@@ -237,6 +246,8 @@ class Build {
   PlanetMeta meta_;
   BuildPlan plan_;
   ShardPlan shard_;
+  std::vector<lod::TileKey> images_;
+  std::optional<PatchStart> patch_;
   PlanetWriter writer_;
   Stages stages_;
   int threads_;
@@ -249,6 +260,10 @@ class Build {
   const StoredTiles stored_{meta_, writer_, nodes_};
 };
 
+std::vector<lod::TileKey> image_tiles(const BuildOptions& options, const mars::ImageSource* image) {
+  return image != nullptr ? plan_images(options, *image) : std::vector<lod::TileKey>();
+}
+
 }  // namespace
 
 BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
@@ -258,7 +273,20 @@ BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSour
   if (!options.shard.is_all() && options.keep_shard)
     if (const auto finished = finished_shard(options, meta)) return *finished;
   if (!plan) plan = plan_tiles(options, elevation);
-  return Build(options, elevation, image, meta, std::move(*plan), progress).run();
+  return Build(options, elevation, image, meta, std::move(*plan), image_tiles(options, image), {}, progress)
+      .run();
+}
+
+BuildSummary patch_planet(const BuildOptions& options, const PatchedPlanet& patched,
+                          const mars::ElevationSource& elevation, const mars::ImageSource* image,
+                          const ProgressFunction& progress, std::optional<BuildPlan> plan) {
+  if (!options.shard.is_all()) throw PlanetError(patched.path + ": a part of a planet cannot be patched");
+  const PlanetMeta meta = describe_planet(options, elevation, image);
+  if (!plan) plan = plan_tiles(options, elevation);
+  std::vector<lod::TileKey> images = image_tiles(options, image);
+  PatchStart patch = plan_patch(patched, meta, *plan, images);
+  return Build(options, elevation, image, meta, std::move(*plan), std::move(images), std::move(patch), progress)
+      .run();
 }
 
 }  // namespace paging

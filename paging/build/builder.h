@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "mars/sources/source.h"
-#include "paging/build/build_plan.h"
+#include "paging/build/patch_start.h"
+#include "paging/plan/build_plan.h"
 #include "paging/planet/planet_meta.h"
 #include "vpe/base/shard.h"
 
@@ -54,6 +55,8 @@ struct BuildOptions {
   std::size_t resampling_posts = 4'000'000;
   vpe::base::Shard shard;  // only this shard of the tiles, into a file for merge_shards()
   bool keep_shard = true;  // a finished shard of the same sources and options is kept; false: built again
+  // Arguments of a command that opens the same sources. The file keeps them, so that it can be patched.
+  std::vector<std::string> arguments;
   // Seconds between commits: about what a killed build may lose. Smaller: loses less, writes more often.
   double commit_s = 1.0;
 };
@@ -65,6 +68,7 @@ struct BuildProgress {
   double fraction = 0;    // of the whole build, by measured cost shares
   std::int64_t kept = 0;  // tiles and image tiles that an earlier, stopped build had finished
   bool replaced = false;  // OUTPUT.part of other options or sources existed and has been removed
+  bool patched = false;   // the tiles that are kept come from the planet that is patched
 };
 // Called from worker threads, one at a time. May throw to stop.
 using ProgressFunction = std::function<void(const BuildProgress&)>;
@@ -103,5 +107,16 @@ BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& e
 BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
                           const mars::ImageSource* image, const ProgressFunction& progress = {},
                           std::optional<BuildPlan> plan = {});
+
+// Builds the same planet file as build_planet() does, but begins with a copy of `patched`, a finished planet file, and
+// makes only the tiles in which the planet differs from it: finest tiles where `patched` says that sources changed,
+// their surroundings where the spacing changes, and all tiles above these. Identity, and meta but for `arguments`, are
+// those of the full build. OUTPUT may be the patched file itself. A patch that is stopped is continued by the next one
+// of the same file with the same sources and options.
+//
+// Throws what build_planet() and plan_patch() throw. Shards cannot be patched.
+BuildSummary patch_planet(const BuildOptions& options, const PatchedPlanet& patched,
+                          const mars::ElevationSource& elevation, const mars::ImageSource* image,
+                          const ProgressFunction& progress = {}, std::optional<BuildPlan> plan = {});
 
 }  // namespace paging

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "paging/build/build_plan.h"
 #include "paging/build/builder.h"
+#include "paging/plan/build_plan.h"
 
 namespace paging {
 

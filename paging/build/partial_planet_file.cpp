@@ -37,6 +37,10 @@ std::unique_ptr<Database> open_exclusively(const std::string& path) {
   return db;
 }
 
+void put_fingerprint(const Database& db, const std::string& fingerprint) {
+  Statement(db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
+}
+
 bool has_fingerprint(Database& db, const std::string& fingerprint) {
   if (db.integer("PRAGMA application_id") != kApplicationId) return false;
   Statement text(db, "SELECT text FROM recipe");
@@ -131,6 +135,27 @@ PartialPlanetFile continue_partial_file(const std::string& path, const std::stri
   }
 }
 
+// Makes the partial file a copy of a finished planet file, without what the patch drops.
+std::unique_ptr<Database> copy_finished(const std::string& path, const PatchStart& patch) {
+  fs::copy_file(patch.path, path);
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write, fs::perm_options::add);
+  auto db = open_exclusively(path);
+  db->execute(kPartialTables);
+  if (!is_intact(*db)) {
+    throw PlanetError(patch.path +
+                      ": cannot be patched: it is damaged ('vpe verify' says where); build the planet again");
+  }
+  for (const char* table : {"node", "variant", "posts_error", "heights", "missing", "origin", "mesh"}) {
+    Statement remove(*db, std::string("DELETE FROM ") + table + " WHERE key = ?");
+    for (const std::int64_t key : patch.dropped) remove.bind(1, key).step();
+  }
+  Statement remove_image(*db, "DELETE FROM image WHERE key = ?");
+  for (const std::int64_t key : patch.dropped_images) remove_image.bind(1, key).step();
+  db->execute("DELETE FROM resampling");
+  db->execute("DELETE FROM meta");
+  return db;
+}
+
 }  // namespace
 
 // Damage is not repaired: neither a killed build nor a sudden power loss leaves any, and a disk that changes bits
@@ -162,7 +187,8 @@ bool is_intact(Database& db) {
          db.integer("SELECT count(*) FROM variant") == variants;
 }
 
-PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint) {
+PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint,
+                                    const PatchStart* patch) {
   require_own_files(path);
   try {
     PartialPlanetFile partial;
@@ -171,12 +197,23 @@ PartialPlanetFile open_partial_file(const std::string& path, const std::string& 
       if (partial.db) return partial;
     }
     remove_partial_file(path);
+    if (patch != nullptr) {
+      try {
+        partial.db = copy_finished(path, *patch);
+      } catch (...) {
+        remove_partial_file(path);
+        throw;
+      }
+      if (partial.start == PartialFileStart::kNew) partial.start = PartialFileStart::kPatched;
+      put_fingerprint(*partial.db, fingerprint);
+      return partial;
+    }
     partial.db = open_exclusively(path);
     partial.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
     partial.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
     partial.db->execute(kSchema);
     partial.db->execute(kPartialTables);
-    Statement(*partial.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
+    put_fingerprint(*partial.db, fingerprint);
     return partial;
   } catch (const DatabaseError& e) {
     if (e.busy()) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "paging/build/patch_start.h"
 #include "paging/planet/sqlite.h"
 
 namespace paging {
@@ -17,6 +18,7 @@ enum class PartialFileStart {
   kNew,        // none existed, or nothing of it had been committed
   kContinued,  // its fingerprint is the same: its tiles are kept
   kReplaced,   // its fingerprint is another, or it was damaged: removed
+  kPatched,    // it begins with the tiles of a finished planet file
 };
 
 struct PartialPlanetFile {
@@ -31,7 +33,11 @@ struct PartialPlanetFile {
 // DatabaseError and leaves the file as it is in all other cases: it cannot be read or written, the disk is
 // full, or a file of another program has this name or that of a journal beside it; busy() is true while another
 // build writes the file.
-PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint);
+//
+// With `patch`, a new one begins as a copy of that finished planet file without the tiles that the patch drops; nothing
+// of it is committed yet. Throws PlanetError if the finished file is damaged.
+PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint,
+                                    const PatchStart* patch = nullptr);
 
 // Returns whether every row of a partial file or shard is as it was written, and every tile has all of its rows.
 // Throws PlanetError, DatabaseError.

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #ifndef VPE_VERSION
 #define VPE_VERSION "0"
@@ -63,12 +64,38 @@ struct PlanetWriter::Statements {
   Statement read_mesh;
 };
 
-PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s)
+PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s,
+                           const PatchStart* patch)
     : path_(path),
       part_path_(path + ".part"),
       commit_every_(commit_s),
-      partial_(open_partial_file(part_path_, fingerprint)) {
+      partial_(open_partial_file(part_path_, fingerprint, patch)) {
   sql_ = std::make_unique<Statements>(*partial_.db);
+  if (patch == nullptr || partial_.start == PartialFileStart::kContinued) return;
+  try {
+    renumber_sources(*patch);
+    commit();
+  } catch (...) {
+    sql_.reset();
+    partial_.db.reset();
+    remove_partial_file(part_path_);
+    throw;
+  }
+}
+
+// Rows of kept tiles name sources by their numbers in the finished planet.
+void PlanetWriter::renumber_sources(const PatchStart& patch) {
+  std::vector<NodeRow> rows;
+  if (read_nodes(*partial_.db, rows)) partial_.db->fail("read the tile index of " + patch.path);
+  for (NodeRow& row : rows) {
+    const std::string before = std::exchange(row.sources, {});
+    const std::vector<int> numbers = source_indices(before).value();  // read_nodes() has checked it
+    for (const int number : numbers) {
+      if (!row.sources.empty()) row.sources.push_back(',');
+      row.sources += std::to_string(patch.source_numbers.at(static_cast<std::size_t>(number)));
+    }
+    if (row.sources != before) put_node(row);
+  }
 }
 
 PlanetWriter::~PlanetWriter() {
@@ -103,7 +130,10 @@ void PlanetWriter::write(const Puts& puts) {
 }
 
 void PlanetWriter::commit_when_due() {
-  if (std::chrono::steady_clock::now() - last_commit_ < commit_every_) return;
+  if (std::chrono::steady_clock::now() - last_commit_ >= commit_every_) commit();
+}
+
+void PlanetWriter::commit() {
   partial_.db->execute("COMMIT");
   partial_.holds_tiles = true;
   uncommitted_ = false;

@@ -44,7 +44,10 @@ class PlanetWriter {
   // `fingerprint` is everything that the content is a function of, as text: two builds with equal fingerprints
   // make equal tiles. `commit_s` is the time between commits: a build that is killed loses less when it is
   // smaller, and writes faster when it is larger.
-  PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0);
+  //
+  // With `patch`, a new file begins with the kept tiles of a finished planet file.
+  PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0,
+               const PatchStart* patch = nullptr);
   // Without publish(), keeps the .part file, or removes it when it holds no tiles or after discard().
   ~PlanetWriter();
   PlanetWriter(const PlanetWriter&) = delete;
@@ -93,6 +96,8 @@ class PlanetWriter {
   void put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed);
   void put_node(const NodeRow& row);
   void commit_when_due();
+  void commit();
+  void renumber_sources(const PatchStart& patch);
   std::optional<Bytes> find(Statement& statement, const lod::TileKey& key, std::int64_t seed);
   Bytes read(Statement& statement, const lod::TileKey& key, std::int64_t seed);
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "paging/build/build_plan.h"
 #include "paging/build/build_steps.h"
+#include "paging/plan/build_plan.h"
 #include "vpe/base/shard.h"
 
 namespace paging {

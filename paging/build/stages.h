@@ -13,6 +13,7 @@ class Stages {
   explicit Stages(const ProgressFunction& report) : report_(report) {}
 
   bool replaced = false;
+  bool patched = false;
   std::int64_t kept() const { return kept_; }
   void add_kept(std::int64_t count) { kept_ += count; }
 
@@ -44,7 +45,7 @@ class Stages {
   void report() {
     if (!report_) return;
     const double done = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
-    report_({name_, done_, total_, done_share_ + share_ * done, kept_, replaced});
+    report_({name_, done_, total_, done_share_ + share_ * done, kept_, replaced, patched});
   }
 
   const ProgressFunction& report_;

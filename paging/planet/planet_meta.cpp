@@ -144,7 +144,8 @@ bool PlanetMeta::operator==(const PlanetMeta& o) const {
          lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
          leaf_tiles == o.leaf_tiles && tiles == o.tiles && image_tiles == o.image_tiles &&
          finest_level == o.finest_level && finest_image_level == o.finest_image_level && program == o.program &&
-         identity == o.identity && illustration == o.illustration && levels == o.levels && shard == o.shard;
+         identity == o.identity && illustration == o.illustration && build_settings == o.build_settings &&
+         arguments == o.arguments && levels == o.levels && shard == o.shard;
 }
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
@@ -173,6 +174,8 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"program", m.program},
       {"identity", m.identity},
       {"illustration", m.illustration ? "true" : "false"}};
+  if (!m.build_settings.empty()) rows[kBuildSettingsKey] = m.build_settings;
+  if (!m.arguments.empty()) rows[kArgumentsKey] = vpe::core::json_text(json(m.arguments));
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
   if (m.shard) rows["part"] = to_text(*m.shard);
   rows[kMetaChecksumKey] = meta_checksum(rows);
@@ -227,6 +230,8 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     m.program = text("program");
     m.identity = text("identity");
     m.illustration = value("illustration").get<bool>();
+    if (rows.contains(kBuildSettingsKey)) m.build_settings = text(kBuildSettingsKey);
+    if (rows.contains(kArgumentsKey)) m.arguments = value(kArgumentsKey).get<std::vector<std::string>>();
     current = "levels";
     if (rows.contains("levels")) m.levels = levels_from_text(text("levels"));
     current = "part";

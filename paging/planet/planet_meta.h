@@ -19,11 +19,14 @@ class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
-inline constexpr int kFormatMinor = 3;
+inline constexpr int kFormatMinor = 4;
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
 inline constexpr const char* kMetaChecksumKey = "checksum";  // its row covers all other rows of `meta`
+// Keys of the rows that tell how the file was built.
+inline constexpr const char* kBuildSettingsKey = "build";
+inline constexpr const char* kArgumentsKey = "arguments";
 
 // Returns true if the file begins as a planet file of this program does, complete or not, sound or not. Does not
 // throw.
@@ -54,11 +57,14 @@ struct PlanetMeta {
   std::int64_t image_tiles = 0;
   int finest_level = 0;
   int finest_image_level = -1;
-  std::string program;               // version that built it
-  std::string identity;              // hexadecimal hash of all checksums: equal content, equal identity
-  bool illustration = false;         // some source is made up
-  std::vector<LevelSummary> levels;  // by level, coarsest first; empty in files of format 1.0
-  std::optional<ShardMeta> shard;    // set when the file holds one shard of a divided build only
+  std::string program;        // version that built it
+  std::string identity;       // hexadecimal hash of all checksums: equal content, equal identity
+  bool illustration = false;  // some source is made up
+  // Lines of all that the content of a tile depends on beside the sources and what stands here; empty before 1.4.
+  std::string build_settings;
+  std::vector<std::string> arguments;  // of the command that opens the same sources; empty: not known
+  std::vector<LevelSummary> levels;    // by level, coarsest first; empty in files of format 1.0
+  std::optional<ShardMeta> shard;      // set when the file holds one shard of a divided build only
 
   bool operator==(const PlanetMeta&) const;
 };

@@ -28,9 +28,10 @@ struct Layer {
 };
 
 // Every module that a room of vpe/app may use.
-const std::vector<std::string> kBelowApp{
-    "vpe/base",    "mars",   "vpe/core",  "cull",     "lod",         "objects",    "relief",     "paging",     "scripts",
-    "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/warp"};
+const std::vector<std::string> kBelowApp{"vpe/base",   "mars",      "vpe/core", "cull",        "lod",
+                                         "objects",    "relief",    "paging",   "scripts",     "vpe/overlay",
+                                         "vpe/gl",     "vpe/voxel", "panorama", "vpe/explore", "vpe/report",
+                                         "vpe/window", "vpe/warp"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
   rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
@@ -75,7 +76,8 @@ const std::vector<Layer>& layers() {
        "objects",
        {"vpe/base", "mars", "vpe/core", "objects/model", "objects/volumes", "objects/files"}},
       {"paging/planet", "paging", {"vpe/base", "mars", "vpe/core", "lod"}},
-      {"paging/build", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
+      {"paging/plan", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
+      {"paging/build", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet", "paging/plan"}},
       {"paging/surface", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
       {"paging/shading", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet", "paging/surface"}},
       {"paging", "paging", {"vpe/base"}},

@@ -120,6 +120,7 @@ inline void make_older(const std::string& path, const std::string& format) {
     }
   }
   if (format < "1.2") db.execute("DROP TABLE IF EXISTS posts_error");
+  if (format < "1.4") db.execute("DELETE FROM meta WHERE key IN ('build', 'arguments')");
   if (format < "1.1") db.execute("DELETE FROM meta WHERE key = 'levels'");
   db.execute("UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
   db.execute("UPDATE meta SET value = '" + paging::content_identity(db) + "' WHERE key = 'identity'");

@@ -1,4 +1,4 @@
-#include "paging/build/build_plan.h"
+#include "paging/plan/build_plan.h"
 
 #include <algorithm>
 #include <array>

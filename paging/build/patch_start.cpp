@@ -1,0 +1,103 @@
+#include "paging/build/patch_start.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "paging/planet/planet_database.h"
+
+namespace paging {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw PlanetError(path + ": cannot be patched: " + reason);
+}
+
+std::string settings_difference(const std::string& is, const std::string& wanted) {
+  const auto [a, b] = std::ranges::mismatch(is, wanted);
+  const auto line = [](const std::string& text, std::string::const_iterator at) {
+    const auto begin = std::find(std::make_reverse_iterator(at), text.rend(), '\n').base();
+    return std::string(begin, std::find(at, text.end(), '\n'));
+  };
+  return "'" + line(is, a) + "', not '" + line(wanted, b) + "'";
+}
+
+void require_equal_planets(const std::string& path, const PlanetMeta& is, const PlanetMeta& wanted) {
+  const char* const kAgain = "; build the planet again from all sources";
+  if (is.shard) refuse(path, "it is one part of a planet; join the parts with 'vpe merge' first");
+  if (is.build_settings.empty())
+    refuse(path, std::string("it does not tell how it was built, as an older version made it") + kAgain);
+  if (is.body != wanted.body) refuse(path, "it is " + is.body + ", and the sources are of " + wanted.body);
+  if (!(is.datum == wanted.datum) || is.shape != wanted.shape) {
+    refuse(path, "its heights have datum '" + to_string(is.datum) + "' and shape '" + is.shape +
+                     "', those of the sources '" + to_string(wanted.datum) + "' and '" + wanted.shape + "'");
+  }
+  if (is.build_settings != wanted.build_settings)
+    refuse(path, "it was built with " + settings_difference(is.build_settings, wanted.build_settings) + kAgain);
+  if (is.radius_m != wanted.radius_m || is.tile.k != wanted.tile.k || is.quantum_m != wanted.quantum_m)
+    refuse(path, std::string("its radius, size of tiles or step of heights is another") + kAgain);
+}
+
+bool is_same_source(const mars::SourceInfo& a, const mars::SourceInfo& b) {
+  const auto file = [](const mars::SourceInfo& s) { return std::filesystem::path(s.name).filename().string(); };
+  if (file(a) != file(b) || a.resolution_m != b.resolution_m || a.quantum_m != b.quantum_m ||
+      !(a.datum == b.datum))
+    return false;
+  return a.content == b.content &&
+         (!a.content.empty() || (a.size_bytes == b.size_bytes && a.mtime_s == b.mtime_s));
+}
+
+// Returns the number of each source of `before` among `now`, where they must stand in the same order.
+std::vector<int> numbers_now(const std::string& path, const std::vector<mars::SourceInfo>& before,
+                             const std::vector<mars::SourceInfo>& now) {
+  std::vector<int> numbers;
+  auto at = now.begin();
+  for (const mars::SourceInfo& source : before) {
+    at = std::find_if(at, now.end(), [&](const mars::SourceInfo& s) { return is_same_source(source, s); });
+    if (at == now.end()) {
+      refuse(path, "its source " + source.name +
+                       " is not what it was built from: another size, time or content; build the planet again");
+    }
+    numbers.push_back(static_cast<int>(at++ - now.begin()));
+  }
+  return numbers;
+}
+
+std::set<std::int64_t> keys_of(const Database& db, const char* table) {
+  std::set<std::int64_t> keys;
+  Statement rows(db, std::string("SELECT key FROM ") + table);
+  while (rows.step()) keys.insert(rows.integer(0));
+  return keys;
+}
+
+}  // namespace
+
+PatchStart plan_patch(const PatchedPlanet& patched, const PlanetMeta& meta, const BuildPlan& plan,
+                      const std::vector<lod::TileKey>& images) {
+  const Database db = open_planet_database(patched.path);
+  const PlanetMeta before = from_rows(read_meta_rows(db), patched.path);
+  require_equal_planets(patched.path, before, meta);
+  std::vector<NodeRow> rows;
+  if (read_nodes(db, rows)) refuse(patched.path, "its tile index is damaged; build the planet again");
+  PatchStart start{
+      patched.path, before.identity, {}, {}, {}, numbers_now(patched.path, before.sources, meta.sources)};
+  try {
+    start.kept = kept_tiles({rows, keys_of(db, "missing")}, plan, meta, patched.elevation_changes);
+  } catch (const PlanetError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    refuse(patched.path, std::string(e.what()) + "; build the planet again");
+  }
+  for (const NodeRow& row : rows)
+    if (!start.kept.contains(*lod::unpack(row.key))) start.dropped.push_back(row.key);
+
+  std::set<std::int64_t> images_now;
+  numbers_now(patched.path, before.image_sources, meta.image_sources);
+  for (const lod::TileKey& key : images)
+    if (!patched.image_changes(surroundings(key, kImageIntervals))) images_now.insert(lod::pack(key));
+  for (const std::int64_t key : keys_of(db, "image"))
+    if (!images_now.contains(key)) start.dropped_images.push_back(key);
+  return start;
+}
+
+}  // namespace paging
