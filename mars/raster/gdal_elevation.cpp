@@ -87,6 +87,15 @@ struct HeightTile {
   std::size_t bytes() const { return sizeof(HeightTile) + values.size() * sizeof(T); }
 };
 
+// Returns the mask that rejects what either of two rejects.
+PostMask both(PostMask first, PostMask second) {
+  return [first = std::move(first), second = std::move(second)](std::span<const glm::dvec3> directions,
+                                                                std::span<double> heights_m) {
+    first(directions, heights_m);
+    second(directions, heights_m);
+  };
+}
+
 template <class T>
 class GdalElevation final : public ElevationSource, public BoundaryAware, public Maskable {
  public:
@@ -127,8 +136,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
         info_(whole.info_),
         levels_{whole.levels_.front()},
         blocks_(whole.blocks_),
-        mask_(std::move(mask)),
-        mask_margin_(margin) {
+        mask_(whole.mask_ ? both(whole.mask_, std::move(mask)) : std::move(mask)),
+        mask_margin_(std::max(whole.mask_margin_, margin)) {
     info_.treatment = add_treatment(info_.treatment, treatment);
     find_poles();
   }

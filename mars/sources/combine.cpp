@@ -96,11 +96,16 @@ Source in_datum(const Source& source, const Conversion& conversion, const Vertic
       source, [](std::span<const glm::dvec3>, std::span<double>) {}, datum, "");
 }
 
+CombineOptions::Alignment alignment_of(const std::string& name, const CombineOptions& options) {
+  const auto own = options.alignments.find(name);
+  return own != options.alignments.end() ? own->second : options.alignment;
+}
+
 // Aligns an inset to its base and finds its outliers, as the options say.
 Source aligned_and_checked(Source inset, const Source& base, const CombineOptions& options,
                            CombineFinding& finding, std::vector<std::string>& notes) {
   const VerticalDatum datum = inset->infos().front().datum;
-  if (options.alignment == CombineOptions::Alignment::kPlane) {
+  if (alignment_of(finding.name, options) == CombineOptions::Alignment::kPlane) {
     finding.alignment = fit_alignment(*inset, *base, options.radius_m, options.stack.feather_posts);
     if (finding.alignment) {
       inset = adjusted(inset, alignment_adjustment(*finding.alignment), datum, to_string(*finding.alignment));
@@ -157,7 +162,7 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
       Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
       check_silent_datums(*layer, *base, options.radius_m, silent, options.same_datum);
       layer = aligned_and_checked(std::move(layer), base, options, finding, combined.notes);
-      if (options.alignment == CombineOptions::Alignment::kEdges) {
+      if (alignment_of(finding.name, options) == CombineOptions::Alignment::kEdges) {
         finding.edge_matching = fit_edge_matching(*layer, *base, options.radius_m);
         if (finding.edge_matching) {
           base = adjusted(std::move(base), edge_adjustment(*finding.edge_matching), combined.datum,

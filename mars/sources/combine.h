@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -42,8 +43,9 @@ struct CombineOptions {
   std::set<std::string> same_datum;
   std::shared_ptr<const ElevationSource> areoid;  // see conversion()
   Alignment alignment = Alignment::kNone;
-  bool check_outliers = true;    // costs one more look at a subset of the posts
-  bool reject_outliers = false;  // leaves outliers out; implies check_outliers
+  std::map<std::string, Alignment> alignments;  // by SourceInfo::name, for single sources
+  bool check_outliers = true;                   // costs one more look at a subset of the posts
+  bool reject_outliers = false;                 // leaves outliers out; implies check_outliers
   OutlierOptions outliers;
   // Two posts of the base: a narrower fade is finer than the base can show, a wider one hides more of the
   // inset.

@@ -98,13 +98,13 @@ std::string build_settings(const BuildOptions& options) {
   };
   add("mesh ratio", options.mesh_ratio);
   add("image quality", options.image_quality);
-  add("compared posts", static_cast<double>(options.resampling_posts));
   return text;
 }
 
 std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& meta) {
   using vpe::base::format_number;
   std::string text = build_settings(options);
+  text += "compared posts = " + std::to_string(options.resampling_posts) + "\n";
   text += "base spacing = " + format_number(options.base_spacing_m) + "\n";
   text += "finest spacing = " + format_number(options.finest_spacing_m) + "\n";
   text += "finest image = " + format_number(options.finest_image_m) + "\n";

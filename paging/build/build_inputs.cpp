@@ -11,17 +11,6 @@ namespace paging {
 
 namespace {
 
-// A power of two well below what the sources resolve: heights between their posts are interpolated, and a
-// coarse step would show as terraces in slopes and shading.
-double choose_quantum(const std::vector<mars::SourceInfo>& sources, double finest_spacing_m) {
-  double step = 1.0;
-  for (const mars::SourceInfo& s : sources) {
-    step =
-        std::min(step, s.quantum_m > 0 ? s.quantum_m / 16 : std::max(s.resolution_m, finest_spacing_m) / 512);
-  }
-  return std::clamp(std::exp2(std::floor(std::log2(step))), 1.0 / 4096.0, 1.0);
-}
-
 double mean_height(const mars::ElevationSource& source, const PlanetMeta& meta) {
   double sum = 0;
   std::int64_t count = 0;
@@ -43,6 +32,16 @@ bool is_wanted_fine(const BuildOptions& options, const mars::Cap& cap) {
 }
 
 }  // namespace
+
+// Heights between posts are interpolated: a coarse step would show as terraces in slopes and shading.
+double choose_quantum(const std::vector<mars::SourceInfo>& sources, double finest_spacing_m) {
+  double step = 1.0;
+  for (const mars::SourceInfo& s : sources) {
+    step =
+        std::min(step, s.quantum_m > 0 ? s.quantum_m / 16 : std::max(s.resolution_m, finest_spacing_m) / 512);
+  }
+  return std::clamp(std::exp2(std::floor(std::log2(step))), 1.0 / 4096.0, 1.0);
+}
 
 bool touches(const Region& region, const mars::Cap& cap) {
   const mars::LonLat centre = mars::lon_lat(cap.centre);

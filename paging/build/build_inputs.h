@@ -38,6 +38,9 @@ std::string portable_fingerprint(const std::string& fingerprint);
 std::vector<std::string> fingerprint_differences(const std::string& is, const std::string& not_this,
                                                  const PlanetMeta& meta);
 
+// Returns the step of stored heights that fits the sources: a power of two well below what they resolve.
+double choose_quantum(const std::vector<mars::SourceInfo>& sources, double finest_spacing_m);
+
 // Returns the wanted post spacing as a function of the place. Both arguments must outlive the function.
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source);
 

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "mars/embedded/detail_below.h"
 #include "mars/geodesy/bodies.h"
 #include "mars/sources/adjusted.h"
+#include "vpe/app/planet/source_mask.h"
 #include "vpe/base/number.h"
 
 namespace vpe::app {
@@ -69,21 +71,26 @@ void choose_body(const SourceArguments& arguments, const std::vector<Source>& so
   if (arguments.body.empty() && arguments.radius_m <= 0 && !stated.empty()) options.body = stated;
 }
 
-bool is_named(const std::string& path, const std::string& name) {
-  return path == name || std::filesystem::path(path).filename().string() == name;
-}
-
-// Holds a --datum option: [NAME=]DATUM.
-struct DatumOption {
-  std::string text;
-  std::string name;  // empty: all sources without a datum of their own
-  std::string datum;
-};
-
-DatumOption datum_option(const std::string& text) {
-  const std::size_t equals = text.rfind('=');
-  if (equals == std::string::npos) return {text, "", text};
-  return {text, text.substr(0, equals), text.substr(equals + 1)};
+// Sets how single sources, or all, are aligned.
+void name_alignments(const SourceArguments& arguments, const std::vector<Source>& sources,
+                     mars::CombineOptions& combine) {
+  using Alignment = mars::CombineOptions::Alignment;
+  static const std::map<std::string, Alignment> kAlignments{
+      {"none", Alignment::kNone}, {"plane", Alignment::kPlane}, {"edges", Alignment::kEdges}};
+  for (const std::string& text : arguments.alignments) {
+    const NamedValue option = named_value(text);
+    const auto alignment = kAlignments.find(option.value);
+    if (alignment == kAlignments.end()) throw UsageError("--align " + text + ": expected none, plane or edges");
+    if (option.name.empty()) {
+      combine.alignment = alignment->second;
+      continue;
+    }
+    const auto source = std::ranges::find_if(
+        sources, [&](const Source& s) { return is_named(s->infos().front().name, option.name); });
+    if (source == sources.end())
+      throw UsageError("--align " + text + ": no raster is called '" + option.name + "'");
+    combine.alignments[(*source)->infos().front().name] = alignment->second;
+  }
 }
 
 // Returns the source with the datum that the user states.
@@ -102,8 +109,8 @@ Source with_datum(const Source& source, const mars::VerticalDatum& datum) {
 void name_datums(const SourceArguments& arguments, std::vector<Source>& sources) {
   std::vector<bool> named(sources.size(), false);
   for (const std::string& text : arguments.datums) {
-    const DatumOption option = datum_option(text);
-    if (option.datum == kSameDatum) continue;
+    const NamedValue option = named_value(text);
+    if (option.value == kSameDatum) continue;
     bool found = false;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const mars::SourceInfo info = sources[i]->infos().front();
@@ -111,7 +118,7 @@ void name_datums(const SourceArguments& arguments, std::vector<Source>& sources)
       found = true;
       named[i] = true;
       const double sphere_m = info.body_radius_m > 0 ? info.body_radius_m : mars::kMarsRadius_m;
-      sources[i] = with_datum(sources[i], checked_datum("--datum", option.datum, sphere_m));
+      sources[i] = with_datum(sources[i], checked_datum("--datum", option.value, sphere_m));
     }
     if (!found && !option.name.empty())
       throw UsageError("--datum " + text + ": no raster is called '" + option.name + "'");
@@ -133,8 +140,8 @@ std::set<std::string> name_same_datums(const SourceArguments& arguments, std::ve
       coarsest != nullptr ? coarsest->infos().front().datum : mars::VerticalDatum();
   std::set<std::string> same;
   for (const std::string& text : arguments.datums) {
-    const DatumOption option = datum_option(text);
-    if (option.datum != kSameDatum) continue;
+    const NamedValue option = named_value(text);
+    if (option.value != kSameDatum) continue;
     bool found = false;
     for (Source& source : sources) {
       const mars::SourceInfo info = source->infos().front();
@@ -198,11 +205,18 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
       ->capture_default_str();
   command
       .add_option(
-          "--align", a.alignment,
-          "plane: remove offset and tilt of each inset, fitted along its boundary; edges: warp the base to "
-          "meet each inset, which keeps its heights")
-      ->check(CLI::IsMember({"none", "plane", "edges"}))
-      ->capture_default_str();
+          "--align", a.alignments,
+          "[NAME=]WAY: plane: remove offset and tilt of each inset, or of the raster NAME alone, fitted along its "
+          "boundary; edges: warp the base to meet it, so that it keeps its heights; none (default) (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option(
+          "--mask", a.masks,
+          "NAME=RASTER: leave out posts of the raster NAME where RASTER, a mask of any grid, is below 0.5 or "
+          "has no data (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--feather", a.feather_m,
                   "Width over which insets fade into the base, metres (default: 16 posts of the inset, but at "
@@ -237,10 +251,7 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
     if (!areoid[0]->infos().front().datum.is_known()) name_datums(arguments, areoid);
     combine.areoid = areoid[0];
   }
-  using Alignment = mars::CombineOptions::Alignment;
-  combine.alignment = arguments.alignment == "plane"   ? Alignment::kPlane
-                      : arguments.alignment == "edges" ? Alignment::kEdges
-                                                       : Alignment::kNone;
+  name_alignments(arguments, sources, combine);
   combine.reject_outliers = arguments.reject_outliers;
   combine.outliers.floor_m = arguments.outlier_floor_m;
   combine.stack.feather_m = arguments.feather_m;

@@ -18,8 +18,9 @@ struct SourceArguments {
   std::string to_datum;  // empty: no conversion; "base": the datum of the coarsest raster; or a datum
   std::string areoid;    // raster of the areoid
   std::string shape = "sphere";
-  std::string alignment = "none";
-  double feather_m = 0;  // 0: mars::StackOptions' default
+  std::vector<std::string> alignments;  // [NAME=]none, plane or edges
+  std::vector<std::string> masks;       // NAME=RASTER
+  double feather_m = 0;                 // 0: mars::StackOptions' default
   bool reject_outliers = false;
   double outlier_floor_m = mars::OutlierOptions().floor_m;
   std::string body;          // empty: the body of the sources

@@ -11,6 +11,7 @@ struct Common;
 
 // Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
 void add_build(CLI::App& program, Common& common);
+void add_patch(CLI::App& program, Common& common);
 void add_merge(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
 void add_verify(CLI::App& program, Common& common);

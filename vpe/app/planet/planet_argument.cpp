@@ -35,6 +35,8 @@ namespace {
 constexpr int kCacheGeneration = 5;
 constexpr int kRasterGeneration = 3;
 
+const std::vector<std::string> kEmbeddedArguments{"embedded", "--image=embedded"};
+
 constexpr std::chrono::milliseconds kLockRetry{50};
 
 // Ends a build that was asked to stop.
@@ -87,7 +89,7 @@ std::string hex(std::uint64_t x) {
   return text;
 }
 
-void build_into(const fs::path& target, const std::string& what,
+void build_into(const fs::path& target, const std::string& what, const std::vector<std::string>& arguments,
                 std::shared_ptr<const mars::ElevationSource> elevation, const mars::ImageSource* image,
                 const Common& common) {
   paging::BuildOptions options;
@@ -98,6 +100,7 @@ void build_into(const fs::path& target, const std::string& what,
   }
   options.output = target.string();
   options.threads = common.threads;
+  options.arguments = arguments;
   run_build(options, *combined.source, image, common);
 }
 
@@ -106,6 +109,7 @@ void build_embedded(const fs::path& target, paging::BuildOptions options,
                     const paging::ProgressFunction& progress) {
   const mars::Combined combined = combine_sources({mars::embedded_elevation()}, {}, options);
   options.output = target.string();
+  options.arguments = kEmbeddedArguments;
   paging::build_planet(options, *combined.source, mars::embedded_image().get(), progress);
 }
 
@@ -226,7 +230,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   if (argument.empty()) {
     return cached(embedded_planet_path().stem().string(), "the embedded Mars", true, common.quiet,
                   [&](const fs::path& target) {
-                    build_into(target, "the embedded Mars", mars::embedded_elevation(),
+                    build_into(target, "the embedded Mars", kEmbeddedArguments, mars::embedded_elevation(),
                                mars::embedded_image().get(), common);
                   });
   }
@@ -247,7 +251,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   return cached(cache_name(argument, state), argument, state.is_certain, common.quiet,
                 [&](const fs::path& target) {
                   limit_rasters(common);
-                  build_into(target, argument, mars::open_elevation(argument), nullptr, common);
+                  build_into(target, argument, {argument}, mars::open_elevation(argument), nullptr, common);
                 });
 }
 

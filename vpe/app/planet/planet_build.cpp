@@ -30,7 +30,7 @@ void print_resumption(const std::string& output, const paging::BuildProgress& p)
   if (p.replaced) {
     std::fprintf(stderr, "vpe: %s was made from other sources or options, or is damaged; starting anew\n",
                  part.c_str());
-  } else if (p.kept > 0) {
+  } else if (p.kept > 0 && !p.patched) {
     std::fprintf(stderr, "Continuing %s\n", part.c_str());
   }
 }
@@ -91,7 +91,7 @@ void limit_rasters(const Common& common) {
 
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
                                const mars::ImageSource* image, const Common& common,
-                               std::optional<paging::BuildPlan> plan) {
+                               std::optional<paging::BuildPlan> plan, const paging::PatchedPlanet* patched) {
   limit_rasters(common);
   if (image != nullptr && !common.quiet) {
     for (const mars::SourceInfo& info : image->infos()) {
@@ -101,9 +101,12 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
   const auto infos = elevation.infos();
   if (std::any_of(infos.begin(), infos.end(), [](const mars::SourceInfo& s) { return s.illustration; }))
     options.resampling_posts = kSyntheticResamplingPosts;
-  return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
-    return paging::build_planet(options, elevation, image, progress, std::move(plan));
-  });
+  return run(options.output, patched != nullptr ? "patching" : "building", common,
+             [&](const paging::ProgressFunction& progress) {
+               if (patched != nullptr)
+                 return paging::patch_planet(options, *patched, elevation, image, progress, std::move(plan));
+               return paging::build_planet(options, elevation, image, progress, std::move(plan));
+             });
 }
 
 void print_estimate(const paging::BuildEstimate& estimate, const Common& common) {

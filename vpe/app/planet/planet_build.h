@@ -23,7 +23,7 @@ inline constexpr std::size_t kSyntheticResamplingPosts = 100'000;
 // Sets the memory of rasters to their share of --memory. Call it before a raster is opened: opening reads some.
 void limit_rasters(const Common& common);
 
-// Runs paging::build_planet() with progress on stderr, after the notes of the image sources. SIGINT and SIGTERM end it with Interrupted. After that,
+// Runs paging::build_planet(), or paging::patch_planet() where `patched` is given, with progress on stderr, after the notes of the image sources. SIGINT and SIGTERM end it with Interrupted. After that,
 // and after any error that leaves an incomplete file, a line on stderr says that the same command continues. A
 // plan that was made before is not made again.
 //
@@ -34,7 +34,8 @@ void limit_rasters(const Common& common);
 //   print_build(run_build(options, elevation, image, common, std::move(plan)), options.output, common);
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
                                const mars::ImageSource* image, const Common& common,
-                               std::optional<paging::BuildPlan> plan = {});
+                               std::optional<paging::BuildPlan> plan = {},
+                               const paging::PatchedPlanet* patched = nullptr);
 
 // Runs paging::merge_shards() in the same way.
 paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common);

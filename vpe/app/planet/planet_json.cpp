@@ -63,6 +63,7 @@ json planet_json(const paging::PlanetMeta& m) {
            {"sources", sources_json(m.sources)},
            {"image_sources", sources_json(m.image_sources)},
            {"program", m.program},
+           {"arguments", m.arguments},
            {"identity", m.identity}};
   if (m.shard) out["part"] = {{"number", m.shard->id.number}, {"of", m.shard->id.of}};
   return out;

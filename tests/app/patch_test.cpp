@@ -1,0 +1,193 @@
+// vpe patch: a finished planet file and new rasters give the planet of a full build.
+#include <cmath>
+#include <fstream>
+
+#include "tests/app/support/app_fixture.h"
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kOff_m = 400;    // of the strip above the globe
+constexpr double kFacets_m = 60;  // more than the globe's facets lie below the ground: their sagitta is 32 m
+
+double ground_m(double lon_deg, double lat_deg) {
+  return 2000 * std::sin(6 * lon_deg * M_PI / 180) * std::cos(lat_deg * M_PI / 180);
+}
+
+class PatchCommand : public AppTest {
+ protected:
+  void SetUp() override {
+    Dem globe;
+    globe.height_m = [](int column, int row) { return ground_m(2 * column - 179, 89 - 2 * row); };
+    write_dem(dir_ / "globe.tif", globe);
+    write_inset("strip.tif", 20, 12, kOff_m);
+  }
+
+  // Writes a square raster whose ground lies `off_m` above the globe's.
+  void write_inset(const std::string& name, double west_deg, double north_deg, double off_m,
+                   double radius_m = 3396190) const {
+    constexpr double kCell_deg = 0.125;
+    Dem inset;
+    inset.width = inset.height = 64;
+    inset.west_deg = west_deg;
+    inset.north_deg = north_deg;
+    inset.cell_deg = kCell_deg;
+    inset.radius_m = radius_m;
+    inset.height_m = [=](int column, int row) {
+      return off_m + ground_m(west_deg + (column + 0.5) * kCell_deg, north_deg - (row + 0.5) * kCell_deg);
+    };
+    write_dem(dir_ / name, inset);
+  }
+
+  json json_of(Words words) const {
+    words.insert(words.end(), {"--json", "-q"});
+    const Result result = vpe(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? parse_json(result.out) : json();
+  }
+
+  // Builds the planet that is patched.
+  json build(const Words& more = {}) const {
+    Words words{"build", "globe.tif", "-o", "p.vpe", "--base-spacing", "21000", "--datum", "areoid"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json_of(words);
+  }
+
+  // Patches p.vpe and expects the content of a full build by the arguments that the patched file states.
+  json expect_full(const Words& more) const {
+    Words words{"patch", "p.vpe", "-o", "patched.vpe", "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const json patched = json_of(words);
+    Words full_words{"build", "-o", "full.vpe", "--force"};
+    for (const json& word : patched["arguments"]) full_words.push_back(word);
+    const json full = json_of(full_words);
+    for (const char* key :
+         {"identity", "sources", "by_level", "arguments", "image_sources", "resampling_rms_m"})
+      EXPECT_EQ(patched[key], full[key]) << key;
+    EXPECT_GT(patched["tiles_kept"].get<int>(), 0);
+    EXPECT_EQ(full["tiles_kept"], 0);
+    EXPECT_EQ(vpe({"verify", "patched.vpe", "--deep", "-q"}).exit_code, 0);
+    EXPECT_EQ(leftovers(), Words{});
+    return patched;
+  }
+
+  double elevation_m(const std::string& planet, const std::string& place) const {
+    return parse_json(vpe({"query", planet, place, "--json"}).out)[0]["elevation_m"].get<double>();
+  }
+};
+
+TEST_F(PatchCommand, GivesThePlanetOfAFullBuild) {
+  const json before = build();
+  const json patched = expect_full({"strip.tif"});
+  EXPECT_NE(patched["identity"], before["identity"]);
+  EXPECT_NEAR(elevation_m("patched.vpe", "24,8"), elevation_m("p.vpe", "24,8") + kOff_m, kFacets_m);
+  EXPECT_EQ(elevation_m("patched.vpe", "-120,-30"), elevation_m("p.vpe", "-120,-30"));
+  // The file itself.
+  const json in_place = json_of({"patch", "p.vpe", "strip.tif", "-o", "p.vpe"});
+  EXPECT_EQ(in_place["identity"], patched["identity"]);
+  // Another patch beside and above it.
+  write_inset("second.tif", 25, 15, -25);
+  expect_full({"second.tif"});
+}
+
+TEST_F(PatchCommand, AlignsAndMasks) {
+  build({"--image", "globe.tif"});
+  Dem mask;
+  mask.width = mask.height = 20;
+  mask.west_deg = 21;
+  mask.north_deg = 11;
+  mask.cell_deg = 0.25;
+  mask.height_m = [](int column, int) { return column < 10 ? 1.0 : 0.0; };
+  write_dem(dir_ / "mask.tif", mask);
+  for (const char* way : {"plane", "edges"}) {
+    SCOPED_TRACE(way);
+    const json patched = expect_full({"strip.tif", "--mask", "mask.tif", "--align", way});
+    EXPECT_TRUE(says(patched["sources"].dump(), {"posts left out where mask.tif is below 0.5"}));
+    // Without offset, or with a base that comes up to it.
+    const double off_m = elevation_m("patched.vpe", "22,8.5") - elevation_m("p.vpe", "22,8.5");
+    if (std::string(way) == "plane") {
+      EXPECT_NEAR(off_m, 0, kFacets_m);
+      EXPECT_NEAR(elevation_m("patched.vpe", "27.5,8.5"), elevation_m("p.vpe", "27.5,8.5"), kFacets_m);
+    } else {
+      EXPECT_NEAR(off_m, kOff_m, kFacets_m);
+    }
+  }
+}
+
+TEST_F(PatchCommand, ImagesAreAdded) {
+  build({"--image", "globe.tif"});
+  const json patched = expect_full({"--image", "strip.tif"});
+  EXPECT_EQ(patched["image_sources"].size(), 2U);
+}
+
+TEST_F(PatchCommand, PlanetsOfRegionsGetAnother) {
+  build({"--region=-40,-10,-20,10", "--spacing", "10000"});
+  const Result outside = vpe({"patch", "p.vpe", "strip.tif", "-o", "coarse.vpe"});
+  EXPECT_EQ(outside.exit_code, 0) << outside.err;
+  const json patched = expect_full({"strip.tif", "--region", "20,4,28,12"});
+  EXPECT_LT(patched["finest_post_spacing_m"].get<double>(), 10001);
+}
+
+TEST_F(PatchCommand, SourcesThatMovedAreFound) {
+  std::filesystem::create_directory(dir_ / "data");
+  std::filesystem::create_directory(dir_ / "planets");
+  std::filesystem::rename(dir_ / "globe.tif", dir_ / "data/globe.tif");
+  json_of({"build", "data/globe.tif", "-o", "planets/p.vpe", "--base-spacing", "21000", "--datum",
+           "data/globe.tif=areoid"});
+  std::filesystem::create_directory(dir_ / "elsewhere");
+  std::filesystem::rename(dir_ / "data/globe.tif", dir_ / "elsewhere/globe.tif");
+  expect_failure({"patch", "planets/p.vpe", "strip.tif", "-o", "q.vpe"}, 1, {"data/globe.tif"});
+  const json found = json_of(
+      {"patch", "planets/p.vpe", "strip.tif", "--datum", "areoid", "-o", "q.vpe", "--sources", "elsewhere"});
+  EXPECT_EQ(found["arguments"][0], "elsewhere/globe.tif");
+  std::filesystem::rename(dir_ / "elsewhere/globe.tif", dir_ / "planets/globe.tif");
+  EXPECT_EQ(json_of({"patch", "planets/p.vpe", "strip.tif", "--datum", "areoid", "-o", "r.vpe"})["identity"],
+            found["identity"]);
+}
+
+TEST_F(PatchCommand, SaysWhatItKeepsAndRounds) {
+  build();
+  const Result result = vpe({"patch", "p.vpe", "strip.tif", "-o", "q.vpe"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(says(result.out, {"q.vpe: ", "kept of p.vpe: "})) << result.out;
+  EXPECT_EQ(result.err.find("Continuing"), std::string::npos) << result.err;
+  // Posts of 7 km would be stored in steps of 1 m at the most, as those of 118 km are.
+  EXPECT_EQ(result.err.find("rounded"), std::string::npos) << result.err;
+}
+
+TEST_F(PatchCommand, BadInputIsRefused) {
+  const json before = build();
+  expect_failure({"patch", "p.vpe", "-o", "q.vpe"}, 2, {"nothing to patch with"});
+  expect_failure({"patch", "p.vpe", "no.tif", "-o", "q.vpe"}, 1, {"no.tif"});
+  expect_failure({"patch", "globe.tif", "strip.tif", "-o", "q.vpe"}, 1, {"globe.tif"});
+  expect_failure({"patch", "p.vpe", "strip.tif", "-o", "strip.tif"}, 2, {"strip.tif"});
+  write_inset("moon.tif", 20, 12, 0, 1737400);
+  expect_failure({"patch", "p.vpe", "moon.tif", "-o", "q.vpe"}, 1, {"moon.tif", "radius"});
+  expect_failure({"patch", "p.vpe", "strip.tif", "--datum", "sphere:3396000", "-o", "q.vpe"}, 1,
+                 {"strip.tif", "sphere:3396000", "--to-datum"});
+  Dem empty;
+  empty.width = empty.height = 8;
+  empty.west_deg = -100;
+  empty.north_deg = 0;
+  empty.cell_deg = 0.5;
+  empty.height_m = [](int, int) { return 1.0; };
+  write_dem(dir_ / "far.tif", empty);
+  expect_failure({"patch", "p.vpe", "strip.tif", "--mask", "far.tif", "-o", "q.vpe"}, 1,
+                 {"far.tif", "leaves no post of strip.tif"});
+  expect_failure({"build", "globe.tif", "--mask", "other.tif=far.tif", "-o", "q.vpe"}, 2, {"other.tif"});
+  expect_failure({"build", "globe.tif", "--align", "level", "-o", "q.vpe"}, 2, {"none, plane or edges"});
+  EXPECT_FALSE(exists("q.vpe"));
+  EXPECT_EQ(leftovers(), Words{});
+  // A source that is another one now.
+  Dem globe;
+  globe.height_m = [](int column, int row) { return 7 + ground_m(2 * column - 179, 89 - 2 * row); };
+  write_dem(dir_ / "globe.tif", globe);
+  expect_failure({"patch", "p.vpe", "strip.tif", "-o", "q.vpe"}, 1,
+                 {"p.vpe", "globe.tif", "build the planet again"});
+  EXPECT_EQ(json_of({"info", "p.vpe"})["identity"], before["identity"]);
+}
+
+}  // namespace
+}  // namespace app_test

@@ -1,0 +1,51 @@
+// What a planet is built from: the sources and options of `vpe build` that its content depends on. A planet file keeps
+// them as arguments, so that `vpe patch` can open the same sources.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "paging/build/builder.h"
+#include "vpe/app/planet/build_sources.h"
+
+namespace vpe::app {
+
+struct BuildRequest {
+  std::vector<std::string> dems;
+  std::vector<std::string> images;
+  std::vector<std::string> regions;  // WEST,SOUTH,EAST,NORTH
+  SourceArguments sources;
+  std::string detail;  // empty, "synthetic" or "none"
+  double base_spacing_m = paging::BuildOptions().base_spacing_m;
+  double finest_spacing_m = 0;  // 0: that of the rasters
+  double finest_image_m = 0;
+  double quantum_m = 0;  // 0: chosen from the sources
+};
+
+// Declares them as options of a command. DEM is the name of its positional argument.
+void add_build_request(CLI::App& command, BuildRequest& request);
+
+// Convert a request to arguments of `vpe build` and back: build_request(to_arguments(r)) equals r. What has its default
+// is left out. Throws UsageError for arguments that vpe build does not have.
+std::vector<std::string> to_arguments(const BuildRequest& request);
+BuildRequest build_request(const std::vector<std::string>& arguments);
+
+// Returns the region of WEST,SOUTH,EAST,NORTH in degrees. Throws UsageError.
+paging::Region parse_region(const std::string& text);
+
+// Returns all files of a request; the word `embedded` is none.
+std::vector<std::string> files_of(const BuildRequest& request);
+
+// Holds the opened sources of a request.
+struct RequestedSources {
+  std::vector<std::shared_ptr<const mars::ElevationSource>> dems;  // by BuildRequest::dems, as opened
+  std::vector<std::shared_ptr<const mars::ImageSource>> images;    // by BuildRequest::images
+  mars::Combined combined;                                         // of `dems`
+  std::shared_ptr<const mars::ImageSource> image;                  // of `images`; null if there are none
+};
+
+// Opens the sources and sets the options of the build that the request decides. Throws UsageError, mars::SourceError.
+RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions& options);
+
+}  // namespace vpe::app

@@ -1,0 +1,216 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "mars/remote/gdal_remote.h"
+#include "paging/build/build_inputs.h"
+#include "paging/planet/planet_database.h"
+#include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/planet/build_request.h"
+#include "vpe/app/planet/commands.h"
+#include "vpe/app/planet/patch_changes.h"
+#include "vpe/app/planet/planet_build.h"
+#include "vpe/app/planet/source_mask.h"
+#include "vpe/base/number.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct PatchArguments {
+  std::string planet;
+  std::vector<std::string> dems;
+  std::vector<std::string> images;
+  std::vector<std::string> regions;
+  std::string mask;
+  std::string alignment;
+  std::string datum;
+  std::string folder;  // where the planet's own sources are looked for
+  bool force = false;
+  paging::BuildOptions options;
+};
+
+// Replaces a source's path in the request, also where options name it.
+void rename_source(BuildRequest& request, const std::string& from, const std::string& to) {
+  for (auto* files : {&request.dems, &request.images})
+    for (std::string& file : *files)
+      if (file == from) file = to;
+  if (request.sources.areoid == from) request.sources.areoid = to;
+  for (auto* options : {&request.sources.datums, &request.sources.alignments, &request.sources.masks}) {
+    for (std::string& text : *options) {
+      NamedValue option = named_value(text);
+      if (option.name == from) option.name = to;
+      if (options == &request.sources.masks && option.value == from) option.value = to;
+      text = option.name.empty() ? option.value : option.name + "=" + option.value;
+    }
+  }
+}
+
+// Finds the files of a request that are not where they were when the planet was built.
+void find_sources(BuildRequest& request, const PatchArguments& arguments) {
+  std::vector<fs::path> folders{fs::path(arguments.planet).parent_path()};
+  if (!arguments.folder.empty()) folders.insert(folders.begin(), arguments.folder);
+  for (const std::string& file : files_of(request)) {
+    std::error_code none;
+    // What is neither a file nor one in these folders may be a name of GDAL's.
+    if (fs::exists(file, none) || mars::is_remote(mars::raster_name(file))) continue;
+    for (const fs::path& folder : folders) {
+      const fs::path here = folder / fs::path(file).filename();
+      if (!fs::exists(here, none)) continue;
+      rename_source(request, file, here.string());
+      break;
+    }
+  }
+}
+
+// Returns what the planet was built from. Throws paging::PlanetError where the file does not tell.
+BuildRequest request_of(const paging::PlanetMeta& meta, const PatchArguments& arguments) {
+  if (meta.arguments.empty()) {
+    throw paging::PlanetError(
+        arguments.planet +
+        ": cannot be patched: it does not tell from which sources it was built; build the planet "
+        "again from all sources");
+  }
+  BuildRequest request;
+  try {
+    request = build_request(meta.arguments);
+  } catch (const UsageError& e) {
+    throw paging::PlanetError(arguments.planet +
+                              ": cannot be patched: it was built by 'vpe build' with arguments that "
+                              "this version does not have (" +
+                              e.what() + "); build the planet again from all sources");
+  }
+  find_sources(request, arguments);
+  return request;
+}
+
+// Adds the sources of the patch to those of the planet.
+BuildRequest patched_request(BuildRequest request, const PatchArguments& arguments,
+                             const paging::PlanetMeta& meta) {
+  for (const std::string& dem : arguments.dems) {
+    request.dems.push_back(dem);
+    if (!arguments.mask.empty()) request.sources.masks.push_back(dem + "=" + arguments.mask);
+    if (!arguments.alignment.empty()) request.sources.alignments.push_back(dem + "=" + arguments.alignment);
+    if (!arguments.datum.empty()) request.sources.datums.push_back(dem + "=" + arguments.datum);
+  }
+  request.images.insert(request.images.end(), arguments.images.begin(), arguments.images.end());
+  request.regions.insert(request.regions.end(), arguments.regions.begin(), arguments.regions.end());
+  request.quantum_m = meta.quantum_m;
+  return request;
+}
+
+// Tells the user what the planet's own options do to the added rasters.
+void note_limits(const BuildRequest& request, const RequestedSources& sources, std::size_t known,
+                 const paging::BuildOptions& options) {
+  for (std::size_t n = known; n < sources.dems.size(); ++n) {
+    const mars::SourceInfo info = sources.dems[n]->infos().front();
+    if (request.finest_spacing_m > 1.5 * info.resolution_m) {
+      std::fprintf(
+          stderr,
+          "vpe: note: posts of %s are %s apart, but those of the planet at least %s, as it was built with "
+          "--spacing\n",
+          info.name.c_str(), length_text(info.resolution_m).c_str(),
+          length_text(request.finest_spacing_m).c_str());
+    }
+    const double step_m = paging::choose_quantum({info}, options.finest_spacing_m);
+    if (step_m < options.quantum_m) {
+      std::fprintf(
+          stderr,
+          "vpe: note: heights of %s are rounded to the planet's step of %s m; by itself it would have %s m, "
+          "which a full build gives\n",
+          info.name.c_str(), base::format_significant(options.quantum_m, 3).c_str(),
+          base::format_significant(step_m, 3).c_str());
+    }
+  }
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code none;
+  return fs::equivalent(a, b, none);
+}
+
+void patch(PatchArguments& arguments, const Common& common) {
+  if (arguments.dems.empty() && arguments.images.empty())
+    throw UsageError("nothing to patch with: name a DEM, or --image");
+  paging::BuildOptions& options = arguments.options;
+  options.threads = common.threads;
+  const paging::PlanetMeta meta = paging::from_rows(
+      paging::read_meta_rows(paging::open_planet_database(arguments.planet)), arguments.planet);
+  const BuildRequest before = request_of(meta, arguments);
+  const BuildRequest request = patched_request(before, arguments, meta);
+  options.output = check_planet_file(options.output, files_of(request));
+  options.tile_k = meta.tile.k;
+  limit_rasters(common);
+
+  paging::BuildOptions options_before = options;
+  const RequestedSources sources_before = open_sources(before, options_before);
+  const RequestedSources sources = open_sources(request, options);
+  if (!common.quiet) {
+    print_findings(sources.combined);
+    note_limits(request, sources, sources_before.dems.size(), options);
+  }
+  const paging::PatchedPlanet patched{
+      arguments.planet, elevation_changes(sources_before, sources, request.sources.reject_outliers),
+      image_changes(sources_before, sources)};
+  paging::BuildPlan plan = paging::plan_tiles(options, *sources.combined.source);
+  std::error_code none;
+  if (!arguments.force && fs::exists(options.output, none) && !is_same_file(options.output, arguments.planet)) {
+    require_same_content(options.output,
+                         paging::planned_content(options, plan, *sources.combined.source, sources.image.get()));
+  }
+  const paging::BuildSummary summary =
+      run_build(options, *sources.combined.source, sources.image.get(), common, std::move(plan), &patched);
+  print_build(summary, options.output, common, &sources.combined);
+  if (!common.json && !common.quiet) {
+    const std::int64_t all = summary.meta.tiles + summary.meta.image_tiles;
+    std::printf("kept of %s: %lld of %lld tiles and image tiles\n", arguments.planet.c_str(),
+                static_cast<long long>(summary.kept), static_cast<long long>(all));
+  }
+}
+
+}  // namespace
+
+void add_patch(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<PatchArguments>();
+  CLI::App* command = add_command(program, "patch", "Add rasters to a finished planet file", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file that 'vpe build' made")->required();
+  command->add_option("DEM", arguments->dems,
+                      "Elevation rasters to add; at each place the finest raster of all counts");
+  command->add_option("--image", arguments->images, "Image rasters to add")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("-o,--output", arguments->options.output, "Planet file to write; may be PLANET")
+      ->required();
+  command->add_option(
+      "--mask", arguments->mask,
+      "Leave out posts of DEM where this raster, a mask of any grid, is below 0.5 or has no data");
+  command
+      ->add_option("--align", arguments->alignment,
+                   "plane: remove offset and tilt of DEM; edges: warp what lies below to meet DEM")
+      ->check(CLI::IsMember({"none", "plane", "edges"}));
+  command->add_option("--datum", arguments->datum,
+                      "Vertical datum of DEM where it does not state one, as for 'vpe build'");
+  command
+      ->add_option(
+          "--region", arguments->regions,
+          "WEST,SOUTH,EAST,NORTH: full resolution in this box too, where the planet was built with --region")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option(
+      "--sources", arguments->folder,
+      "Folder of the rasters that the planet was built from (default: where they were, or beside it)");
+  command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
+  add_examples(*command,
+               {{"a new strip, into a new file", "vpe patch gale.vpe strip.tif -o gale2.vpe"},
+                {"only its trusted part, without its tilt; the file itself is replaced at the end",
+                 "vpe patch gale.vpe strip.tif --mask trusted.tif --align plane -o gale.vpe"},
+                {"a new picture of the same ground", "vpe patch gale.vpe --image ortho.tif -o gale2.vpe"}});
+  command->callback([arguments, &common] { patch(*arguments, common); });
+}
+
+}  // namespace vpe::app
