@@ -54,17 +54,22 @@ double PlacedRelief::spacing_m() const { return spec_.spacing_m.value_or(shapes_
 
 glm::dvec2 PlacedRelief::local_m(const glm::dvec3& direction) const {
   const glm::dvec2 across(glm::dot(direction, axis_x_), glm::dot(direction, axis_y_));
-  const double sine = radius_of(across.x, across.y);
-  if (!(sine > 0)) return {0, 0};
-  return across * (radius_m_ * (std::atan2(sine, glm::dot(direction, cap_.centre)) / sine));
+  return across * stretch_m(radius_of(across.x, across.y), glm::dot(direction, cap_.centre));
+}
+
+// Returns the distance in the plane by the sine of the angle from the place, from its sine and cosine.
+double PlacedRelief::stretch_m(double sine, double cosine) const {
+  return sine > 0 ? radius_m_ * (std::atan2(sine, cosine) / sine) : radius_m_;
 }
 
 ReliefChange PlacedRelief::change(const glm::dvec3& direction, double ground_m) const {
   const ReliefChange none{ground_m, false, false};
-  if (!(glm::dot(direction, cap_.centre) > 0) || std::isnan(ground_m)) return none;
+  const double cosine = glm::dot(direction, cap_.centre);
+  if (!(cosine > 0) || std::isnan(ground_m)) return none;
   const glm::dvec2 across(glm::dot(direction, axis_x_), glm::dot(direction, axis_y_));
-  if (radius_of(across.x, across.y) > sine_of_reach_) return none;
-  const glm::dvec2 at_m = local_m(direction);
+  const double sine = radius_of(across.x, across.y);
+  if (sine > sine_of_reach_) return none;
+  const glm::dvec2 at_m = across * stretch_m(sine, cosine);
   if (!contains(support_, at_m.x, at_m.y)) return none;
   const double weight = spec_.strength * (shapes_.weight ? shapes_.weight->height_m(at_m.x, at_m.y) : 1);
   if (weight == 0) return none;

@@ -68,6 +68,7 @@ class PlacedRelief {
 
  private:
   Rect local_rect(const mars::Cap& cap) const;
+  double stretch_m(double sine, double cosine) const;
 
   ReliefSpec spec_;
   double radius_m_;

@@ -18,6 +18,12 @@ std::string_view short_name(std::string_view name) {
   return name;
 }
 
+std::vector<vpe::core::KeyInfo> line_keys() {
+  std::vector<vpe::core::KeyInfo> keys(relief_keys().infos().begin(), relief_keys().infos().end());
+  for (vpe::core::KeyInfo& key : keys) key.name = short_name(key.name);
+  return keys;
+}
+
 // Sets the keys of a line and returns them.
 std::vector<std::size_t> set_keys(ReliefSpec& spec, std::string_view line) {
   constexpr std::string_view kSpaces = " \t";
@@ -33,7 +39,7 @@ std::vector<std::size_t> set_keys(ReliefSpec& spec, std::string_view line) {
     const std::string_view name = word.substr(0, equals);
     const auto key = find_line_key(name);
     if (!key) {
-      const std::string hint = vpe::core::did_you_mean(name, relief_keys().infos());
+      const std::string hint = vpe::core::did_you_mean(name, line_keys());
       throw std::invalid_argument("unknown key " + vpe::base::quote_text(name) +
                                   (hint.empty() ? "" : "; " + hint));
     }

@@ -282,10 +282,10 @@ TEST(Reliefs, TenThousandStackedAreTheirSum) {
   EXPECT_LE(bounds.high - bounds.low, 1e-3);
 }
 
-TEST(Reliefs, TenThousandStackedPadsHaveTheGroundOfThoseBefore) {
-  std::vector<ReliefSpec> specs(10000, parse_relief_line("kind=pad lon=1 lat=2 radius=50 rise=0.5"));
+TEST(Reliefs, StackedPadsHaveTheGroundOfThoseBefore) {
+  std::vector<ReliefSpec> specs(2000, parse_relief_line("kind=pad lon=1 lat=2 radius=50 rise=0.5"));
   const Relief relief = place_all(specs, flat_ground);
-  EXPECT_EQ(relief.height_m(mars::direction({1, 2}), 0), 100 + 0.5 * 10000);
+  EXPECT_EQ(relief.height_m(mars::direction({1, 2}), 0), 100 + 0.5 * 2000);
 }
 
 TEST(Reliefs, ManyAreFoundWhereTheyAre) {
