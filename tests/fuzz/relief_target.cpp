@@ -13,9 +13,8 @@ namespace fuzz {
 namespace {
 
 Bytes relief_bytes(char selector, const std::string& text) {
-  Bytes bytes{static_cast<std::uint8_t>(selector)};
-  bytes.insert(bytes.end(), text.begin(), text.end());
-  return bytes;
+  const std::string all = selector + text;
+  return {all.begin(), all.end()};
 }
 
 void check_reliefs(const std::vector<relief::ReliefSpec>& specs) {
