@@ -9,6 +9,7 @@
 #include "objects/files/scene_limits.h"
 #include "objects/files/toml_table.h"
 #include "vpe/base/quote.h"
+#include "vpe/base/toml_fault.h"
 
 namespace objects {
 
@@ -260,7 +261,7 @@ class SceneTomlReader {
 SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path) {
   const std::string problem = problem_of_size(text);
   if (!problem.empty()) throw std::runtime_error(path.string() + ":1: " + problem);
-  if (const TomlFault fault = hostile_toml(text); fault.line != 0)
+  if (const vpe::base::TomlFault fault = vpe::base::hostile_toml(text); fault.line != 0)
     throw std::runtime_error(path.string() + ":" + std::to_string(fault.line) + ": " + std::string(fault.what));
   toml::table root;
   try {

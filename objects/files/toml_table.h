@@ -21,18 +21,6 @@
 
 namespace objects {
 
-struct TomlFault {
-  std::size_t line = 0;  // 0: there is none
-  std::string_view what;
-};
-
-// Returns the first fault in a text that toml++ 3.3 does not survive: a key of many parts, for which it makes
-// tables in tables until their destructors exhaust the stack; characters beyond ASCII outside of texts, which
-// reach an unreachable point; and a table whose name begins with another character than names do, a date before
-// another value, and brackets that are no pairs, which fail assertions. Dates, times and texts of several lines
-// are faults too: no key has such a value.
-TomlFault hostile_toml(std::string_view text);
-
 class TomlTable {
  public:
   // All arguments must outlive it.

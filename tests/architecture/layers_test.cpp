@@ -57,6 +57,7 @@ const std::vector<Layer>& layers() {
       {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
       {"relief", "relief", {"vpe/base", "mars", "vpe/core"}},
+      {"relief/files", "relief", {"vpe/base", "mars", "vpe/core", "relief"}},
       {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
       {"objects/volumes", "objects", {"vpe/base", "mars", "vpe/core", "objects/model"}},
       {"objects/files",

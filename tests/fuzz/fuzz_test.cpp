@@ -74,6 +74,7 @@ TEST(Fuzz, Places) { run(fuzz::kPlace, 100000, 1010); }
 TEST(Fuzz, TablesOfPlaces) { run(fuzz::kTable, 50000, 1011); }
 TEST(Fuzz, AxisOrders) { run(fuzz::kAxes, 500, 1012); }
 TEST(Fuzz, Scenes) { run(fuzz::kScene, 5000, 1013); }
+TEST(Fuzz, Reliefs) { run(fuzz::kRelief, 20000, 1017); }
 TEST(Fuzz, Sticks) { run(fuzz::kSticks, 3000, 1014); }
 TEST(Fuzz, Meshes) { run(fuzz::kMesh, 20000, 1015); }
 TEST(Fuzz, Volumes) { run(fuzz::kVolume, 10000, 1016); }

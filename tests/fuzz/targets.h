@@ -57,6 +57,10 @@ extern const Target kImage;
 // Reads scene files: the first byte selects TOML or GeoJSON. What is read is within limits, messages name the file.
 extern const Target kScene;
 
+// Reads files of reliefs: the first byte selects TOML or a line of a flight. What is read can be placed, or there is a reason,
+// survives being written, and changes heights within its bounds.
+extern const Target kRelief;
+
 // Reads models of sticks and casts rays at them.
 extern const Target kSticks;
 

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   for (const fuzz::Target* target :
        {&fuzz::kFlight, &fuzz::kPayload, &fuzz::kPlanet, &fuzz::kForged, &fuzz::kLabel, &fuzz::kRover,
         &fuzz::kGpano, &fuzz::kSidecar, &fuzz::kImage, &fuzz::kPlace, &fuzz::kTable, &fuzz::kAxes,
-        &fuzz::kScene, &fuzz::kSticks, &fuzz::kMesh, &fuzz::kVolume}) {
+        &fuzz::kScene, &fuzz::kRelief, &fuzz::kSticks, &fuzz::kMesh, &fuzz::kVolume}) {
     if (std::strcmp(target->name, argv[1]) != 0) continue;
     std::filesystem::create_directories(argv[2]);
     int number = 0;

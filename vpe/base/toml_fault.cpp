@@ -1,9 +1,10 @@
+#include "vpe/base/toml_fault.h"
+
 #include <algorithm>
 #include <cctype>
+#include <string>
 
-#include "objects/files/toml_table.h"
-
-namespace objects {
+namespace vpe::base {
 
 namespace {
 
@@ -75,4 +76,4 @@ TomlFault hostile_toml(std::string_view text) {
   return {};
 }
 
-}  // namespace objects
+}  // namespace vpe::base

@@ -1,0 +1,138 @@
+#include "relief/relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "vpe/base/quote.h"
+
+namespace relief {
+
+namespace {
+
+// A batch with at most so many reliefs near it asks them one after the other for each place.
+constexpr std::size_t kFewReliefs = 32;
+
+// Applies reliefs in order.
+ReliefChange changed_by(const std::vector<PlacedRelief>& placed, std::span<const std::uint32_t> numbers,
+                        const glm::dvec3& direction, double ground_m) {
+  ReliefChange all{ground_m, false, false};
+  for (const std::uint32_t n : numbers) {
+    const ReliefChange one = placed[n].change(direction, all.height_m);
+    all.height_m = one.height_m;
+    all.decides = all.decides || one.decides;
+  }
+  all.is_changed = !std::isnan(ground_m) && all.height_m != ground_m;
+  all.decides = all.decides && all.is_changed;
+  return all;
+}
+
+// Returns a cap that holds all unit directions.
+mars::Cap cap_of(std::span<const glm::dvec3> directions) {
+  glm::dvec3 middle(0);
+  for (const glm::dvec3& d : directions) middle += d;
+  const double length = glm::length(middle);
+  if (!(length > 0.5 * static_cast<double>(directions.size()))) return {{1, 0, 0}, mars::kPi};
+  middle /= length;
+  double radius_rad = 0;
+  for (const glm::dvec3& d : directions) radius_rad = std::max(radius_rad, mars::angle_between_rad(middle, d));
+  return {middle, radius_rad + 1e-14};
+}
+
+}  // namespace
+
+double Relief::height_m(const glm::dvec3& direction, double ground_m) const {
+  return change(direction, ground_m).height_m;
+}
+
+ReliefChange Relief::change(const glm::dvec3& direction, double ground_m) const {
+  std::vector<std::uint32_t> near;
+  tree_.find({direction, 0}, near);
+  return changed_by(placed_, near, direction, ground_m);
+}
+
+void Relief::change(std::span<const glm::dvec3> directions, std::span<const double> ground_m,
+                    std::span<ReliefChange> changes) const {
+  if (directions.empty()) return;
+  std::vector<std::uint32_t> near;
+  tree_.find(cap_of(directions), near);
+  const bool are_few = near.size() <= kFewReliefs;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    if (!are_few) tree_.find({directions[i], 0}, near);
+    changes[i] = changed_by(placed_, near, directions[i], ground_m[i]);
+  }
+}
+
+bool Relief::touches(const mars::Cap& cap) const {
+  std::vector<std::uint32_t> near;
+  tree_.find(cap, near);
+  return std::ranges::any_of(near, [&](std::uint32_t n) { return placed_[n].touches(cap); });
+}
+
+Interval Relief::bounds_m(const mars::Cap& cap, const Interval& ground_m) const {
+  std::vector<std::uint32_t> near;
+  tree_.find(cap, near);
+  Interval all = ground_m;
+  for (const std::uint32_t n : near) all = placed_[n].bounds_m(cap, all);
+  return all;
+}
+
+double Relief::spacing_m(const mars::Cap& cap) const {
+  std::vector<std::uint32_t> near;
+  tree_.find(cap, near);
+  double finest_m = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t n : near) {
+    if (placed_[n].touches(cap)) finest_m = std::min(finest_m, placed_[n].spacing_m());
+  }
+  return finest_m;
+}
+
+std::string relief_title(const ReliefSpec& spec, std::size_t number) {
+  return spec.name.empty() ? "relief " + std::to_string(number)
+                           : "relief " + std::to_string(number) + " " + vpe::base::quote_text(spec.name);
+}
+
+Relief place(std::vector<ReliefSpec> specs, double radius_m, const GroundHeight& ground) {
+  if (specs.size() > kMostReliefs) {
+    throw std::runtime_error(std::to_string(specs.size()) + " reliefs; expected at most " +
+                             std::to_string(kMostReliefs));
+  }
+  if (!(radius_m > 0 && std::isfinite(radius_m)))
+    throw std::runtime_error("reliefs on a planet without a radius; expected a finite one above 0");
+  Relief relief;
+  std::vector<mars::Cap> caps;
+  for (ReliefSpec& spec : specs) {
+    const std::string title = relief_title(spec, relief.placed_.size() + 1);
+    if (const std::string problem = problem_of(spec); !problem.empty())
+      throw std::runtime_error(title + ": " + problem);
+    try {
+      relief.placed_.emplace_back(std::move(spec), radius_m);
+    } catch (const std::invalid_argument& e) {
+      throw std::runtime_error(title + ": " + e.what());
+    }
+    caps.push_back(relief.placed_.back().cap());
+  }
+  relief.tree_ = CapTree(caps);
+  std::vector<std::uint32_t> near;
+  for (std::size_t n = 0; n < relief.placed_.size(); ++n) {
+    PlacedRelief& one = relief.placed_[n];
+    double zero_m = one.mode() == Mode::kAdd ? 0.0 : one.spec().level_m.value_or(0) + one.spec().rise_m;
+    if (one.needs_ground()) {
+      const glm::dvec3& centre = one.cap().centre;
+      const double ground_m = ground ? ground(centre) : std::numeric_limits<double>::quiet_NaN();
+      relief.tree_.find({centre, 0}, near);
+      near.erase(std::ranges::lower_bound(near, static_cast<std::uint32_t>(n)), near.end());
+      zero_m += changed_by(relief.placed_, near, centre, ground_m).height_m;
+      if (!std::isfinite(zero_m)) {
+        throw std::runtime_error(relief_title(one.spec(), n + 1) +
+                                 ": there is no ground at its place; give level_m, or another place");
+      }
+    }
+    one.set_zero_m(zero_m);
+  }
+  return relief;
+}
+
+}  // namespace relief
