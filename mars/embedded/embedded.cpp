@@ -101,6 +101,10 @@ class EmbeddedElevation final : public ElevationSource {
 
   // Visits posts of the data, in whole rows spread over the planet.
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
+    visit_posts_in(max_posts, {}, visit);
+  }
+
+  void visit_posts_in(std::size_t max_posts, const WantedCap& wanted, const PostVisitor& visit) const override {
     if (max_posts == 0) return;
     constexpr int kColumns = embedded::kMeasuredColumns;
     constexpr int kRows = kColumns / 2;
@@ -114,8 +118,10 @@ class EmbeddedElevation final : public ElevationSource {
       const int apart =
           std::min(kColumns, static_cast<int>(step / embedded::exact_sin_cos_deg(lat_deg).cos + 0.5));
       batch.clear();
-      for (int column = 0; column + apart <= kColumns; column += apart)
-        batch.push_back(embedded::place((column + 0.5) * embedded::kMeasuredPost_deg, lat_deg));
+      for (int column = 0; column + apart <= kColumns; column += apart) {
+        const glm::dvec3 at = embedded::place((column + 0.5) * embedded::kMeasuredPost_deg, lat_deg);
+        if (!wanted || wanted({at, 0})) batch.push_back(at);
+      }
       heights.resize(batch.size());
       sample(batch, embedded::kMeasuredPost_m, heights);
       visit(batch, heights);

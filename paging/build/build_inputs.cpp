@@ -90,7 +90,7 @@ BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& e
 }
 
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
-                           const mars::ImageSource* image) {
+                           const mars::ImageSource* image, std::optional<double> fill_m) {
   PlanetMeta meta;
   if (!(options.radius_m >= kMinRadius_m && options.radius_m < kMaxRadius_m)) {
     throw PlanetError("a planet's radius of " + vpe::base::format_number(options.radius_m) + " m: must be " +
@@ -106,7 +106,7 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
   if (options.true_radii) meta.shape = "radius";
   meta.quantum_m =
       options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
-  meta.fill_m = std::round(mean_height(elevation, meta) / meta.quantum_m) * meta.quantum_m;
+  meta.fill_m = fill_m ? *fill_m : std::round(mean_height(elevation, meta) / meta.quantum_m) * meta.quantum_m;
   for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
   meta.build_settings = build_settings(options);
   meta.arguments = options.arguments;

@@ -10,9 +10,9 @@
 namespace paging {
 
 // Returns meta as far as it is known before the build: body, shape, sources, quantum, fill. `image` may be
-// null. Throws PlanetError when there is no source.
+// null. The fill is the mean height of the sources unless it is given. Throws PlanetError when there is no source.
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
-                           const mars::ImageSource* image);
+                           const mars::ImageSource* image, std::optional<double> fill_m = {});
 
 // Returns the build fingerprint: everything that the content of a planet file is a function of, as lines of text, and
 // paths and times of the sources. Equal fingerprints make equal tiles.

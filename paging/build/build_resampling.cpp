@@ -143,21 +143,21 @@ ResamplingReport measure_resampling(const SampleInputs& sampling, const StoredTi
 }
 
 mars::WantedCap wanted_posts(const BuildOptions& options, const PlanetMeta& meta,
-                             std::span<const lod::TileKey> leaves) {
+                             std::span<const lod::TileKey> leaves, bool are_some) {
   const bool is_regional =
       !options.regions.empty() &&
       std::ranges::any_of(meta.sources, [](const mars::SourceInfo& s) { return s.is_remote; });
-  if (!is_regional && options.shard.is_all()) return {};
+  if (!is_regional && !are_some) return {};
   std::vector<mars::Cap> own;
-  if (!options.shard.is_all()) {
+  if (are_some) {
     for (const lod::TileKey& leaf : leaves) own.push_back(lod::bounding_cap(leaf));
   }
-  return [&options, is_regional, own = std::move(own)](const mars::Cap& cap) {
+  return [&options, is_regional, are_some, own = std::move(own)](const mars::Cap& cap) {
     if (is_regional && std::ranges::none_of(options.regions, [&](const Region& r) { return touches(r, cap); }))
       return false;
-    return options.shard.is_all() || std::ranges::any_of(own, [&](const mars::Cap& tile) {
-             return mars::angle_between_rad(tile.centre, cap.centre) <= tile.radius_rad + cap.radius_rad;
-           });
+    return !are_some || std::ranges::any_of(own, [&](const mars::Cap& tile) {
+      return mars::angle_between_rad(tile.centre, cap.centre) <= tile.radius_rad + cap.radius_rad;
+    });
   };
 }
 

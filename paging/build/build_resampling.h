@@ -23,9 +23,9 @@ ResamplingReport measure_resampling(const SampleInputs& sampling, const StoredTi
                                     std::span<const lod::TileKey> leaves, int threads,
                                     const std::function<void()>& step);
 
-// Returns what the measuring of these finest tiles needs of the sources: caps that touch the tiles of a shard, and,
-// where a source is remote, a region. Empty: all.
+// Returns what the measuring of these finest tiles needs of the sources: caps that touch the tiles if they are not all
+// of the planet's, and, where a source is remote, a region. Empty: all.
 mars::WantedCap wanted_posts(const BuildOptions& options, const PlanetMeta& meta,
-                             std::span<const lod::TileKey> leaves);
+                             std::span<const lod::TileKey> leaves, bool are_some);
 
 }  // namespace paging

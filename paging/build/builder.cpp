@@ -200,10 +200,7 @@ class Build {
 
     // Stage 5 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    ResamplingReport resampling = measure_resampling(
-        sampling_, stored_, options_.resampling_posts, wanted_posts(options_, meta_, shard_.leaves),
-        shard_.leaves, threads_, [this] { stages_.report_again(); });
-    writer_.put_resampling(resampling.tiles);
+    ResamplingReport resampling = measure_made_tiles();
     check_files(meta_.sources);
     check_files(meta_.image_sources);
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
@@ -222,6 +219,28 @@ class Build {
     summary.kept = stages_.kept();
     summary.meta = meta_;
     return summary;
+  }
+
+  // Measures the tiles that this build makes. Those that a patch keeps keep their errors, since each has few posts.
+  ResamplingReport measure_made_tiles() {
+    std::vector<lod::TileKey> made;
+    if (patch_) {
+      std::ranges::copy_if(shard_.leaves, std::back_inserter(made),
+                           [&](const lod::TileKey& key) { return !patch_->kept.contains(key); });
+    }
+    const std::span<const lod::TileKey> leaves = patch_ ? std::span<const lod::TileKey>(made) : shard_.leaves;
+    ResamplingReport found =
+        measure_resampling(sampling_, stored_, options_.resampling_posts,
+                           wanted_posts(options_, meta_, leaves, patch_ || !options_.shard.is_all()), leaves,
+                           threads_, [this] { stages_.report_again(); });
+    writer_.put_resampling(found.tiles);
+    if (patch_) {
+      for (const TileResampling& row : writer_.resampling()) {
+        const lod::TileKey key = *lod::unpack(row.key);
+        if (patch_->kept.contains(key)) found.sums[{key.level, row.of.source}].include(sum_of(row.of.error));
+      }
+    }
+    return found;
   }
 
   void begin(const char* name, std::size_t total, std::size_t open, double share) {
@@ -281,10 +300,14 @@ BuildSummary patch_planet(const BuildOptions& options, const PatchedPlanet& patc
                           const mars::ElevationSource& elevation, const mars::ImageSource* image,
                           const ProgressFunction& progress, std::optional<BuildPlan> plan) {
   if (!options.shard.is_all()) throw PlanetError(patched.path + ": a part of a planet cannot be patched");
-  const PlanetMeta meta = describe_planet(options, elevation, image);
+  const FinishedPlanet finished = read_finished(patched.path);
+  // The fill is seen nowhere on a planet without nodata, and more sources leave it so.
+  const PlanetMeta meta =
+      describe_planet(options, elevation, image,
+                      finished.with_nodata.empty() ? std::optional(finished.meta.fill_m) : std::nullopt);
   if (!plan) plan = plan_tiles(options, elevation);
   std::vector<lod::TileKey> images = image_tiles(options, image);
-  PatchStart patch = plan_patch(patched, meta, *plan, images);
+  PatchStart patch = plan_patch(finished, patched, meta, *plan, images);
   return Build(options, elevation, image, meta, std::move(*plan), std::move(images), std::move(patch), progress)
       .run();
 }

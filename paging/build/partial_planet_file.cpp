@@ -145,13 +145,13 @@ std::unique_ptr<Database> copy_finished(const std::string& path, const PatchStar
     throw PlanetError(patch.path +
                       ": cannot be patched: it is damaged ('vpe verify' says where); build the planet again");
   }
-  for (const char* table : {"node", "variant", "posts_error", "heights", "missing", "origin", "mesh"}) {
+  for (const char* table :
+       {"node", "variant", "posts_error", "heights", "missing", "origin", "mesh", "resampling"}) {
     Statement remove(*db, std::string("DELETE FROM ") + table + " WHERE key = ?");
     for (const std::int64_t key : patch.dropped) remove.bind(1, key).step();
   }
   Statement remove_image(*db, "DELETE FROM image WHERE key = ?");
   for (const std::int64_t key : patch.dropped_images) remove_image.bind(1, key).step();
-  db->execute("DELETE FROM resampling");
   db->execute("DELETE FROM meta");
   return db;
 }

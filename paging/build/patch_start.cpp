@@ -72,30 +72,33 @@ std::set<std::int64_t> keys_of(const Database& db, const char* table) {
 
 }  // namespace
 
-PatchStart plan_patch(const PatchedPlanet& patched, const PlanetMeta& meta, const BuildPlan& plan,
-                      const std::vector<lod::TileKey>& images) {
-  const Database db = open_planet_database(patched.path);
-  const PlanetMeta before = from_rows(read_meta_rows(db), patched.path);
-  require_equal_planets(patched.path, before, meta);
-  std::vector<NodeRow> rows;
-  if (read_nodes(db, rows)) refuse(patched.path, "its tile index is damaged; build the planet again");
+FinishedPlanet read_finished(const std::string& path) {
+  const Database db = open_planet_database(path);
+  FinishedPlanet finished{
+      path, from_rows(read_meta_rows(db), path), {}, keys_of(db, "missing"), keys_of(db, "image")};
+  if (read_nodes(db, finished.rows)) refuse(path, "its tile index is damaged; build the planet again");
+  return finished;
+}
+
+PatchStart plan_patch(const FinishedPlanet& finished, const PatchedPlanet& patched, const PlanetMeta& meta,
+                      const BuildPlan& plan, const std::vector<lod::TileKey>& images) {
+  const PlanetMeta& before = finished.meta;
+  require_equal_planets(finished.path, before, meta);
   PatchStart start{
-      patched.path, before.identity, {}, {}, {}, numbers_now(patched.path, before.sources, meta.sources)};
+      finished.path, before.identity, {}, {}, {}, numbers_now(finished.path, before.sources, meta.sources)};
   try {
-    start.kept = kept_tiles({rows, keys_of(db, "missing")}, plan, meta, patched.elevation_changes);
-  } catch (const PlanetError&) {
-    throw;
+    start.kept = kept_tiles({finished.rows, finished.with_nodata}, plan, meta, patched.elevation_changes);
   } catch (const std::runtime_error& e) {
-    refuse(patched.path, std::string(e.what()) + "; build the planet again");
+    refuse(finished.path, std::string(e.what()) + "; build the planet again");
   }
-  for (const NodeRow& row : rows)
+  for (const NodeRow& row : finished.rows)
     if (!start.kept.contains(*lod::unpack(row.key))) start.dropped.push_back(row.key);
 
   std::set<std::int64_t> images_now;
-  numbers_now(patched.path, before.image_sources, meta.image_sources);
+  numbers_now(finished.path, before.image_sources, meta.image_sources);
   for (const lod::TileKey& key : images)
     if (!patched.image_changes(surroundings(key, kImageIntervals))) images_now.insert(lod::pack(key));
-  for (const std::int64_t key : keys_of(db, "image"))
+  for (const std::int64_t key : finished.images)
     if (!images_now.contains(key)) start.dropped_images.push_back(key);
   return start;
 }

@@ -19,6 +19,18 @@ struct PatchedPlanet {
   ChangedIn image_changes;
 };
 
+// Holds what a finished planet file says of its tiles.
+struct FinishedPlanet {
+  std::string path;
+  PlanetMeta meta;
+  std::vector<NodeRow> rows;
+  std::set<std::int64_t> with_nodata;  // packed keys of tiles with nodata posts
+  std::set<std::int64_t> images;       // packed keys of image tiles
+};
+
+// Reads the index of a finished planet file. Throws PlanetError when it is damaged, DatabaseError.
+FinishedPlanet read_finished(const std::string& path);
+
 // Holds what becomes of the tiles of a finished planet file when a build begins with them.
 struct PatchStart {
   std::string path;      // of the finished planet file
@@ -30,10 +42,9 @@ struct PatchStart {
 };
 
 // Compares a finished planet file with the planet to be built. `images` are the planned image tiles. Throws
-// PlanetError when the file is damaged, does not tell how it was built (format 1.3 and older), is a shard, or was
-// built by another version, with other options or from other sources than the planet's, of which there may be more;
-// DatabaseError.
-PatchStart plan_patch(const PatchedPlanet& patched, const PlanetMeta& meta, const BuildPlan& plan,
-                      const std::vector<lod::TileKey>& images);
+// PlanetError when the file does not tell how it was built (format 1.3 and older), is a shard, or was
+// built by another version, with other options or from other sources than the planet's, of which there may be more.
+PatchStart plan_patch(const FinishedPlanet& finished, const PatchedPlanet& patched, const PlanetMeta& meta,
+                      const BuildPlan& plan, const std::vector<lod::TileKey>& images);
 
 }  // namespace paging

@@ -96,6 +96,22 @@ void PlanetWriter::renumber_sources(const PatchStart& patch) {
     }
     if (row.sources != before) put_node(row);
   }
+  std::vector<TileResampling> errors = read_resampling(*partial_.db);
+  partial_.db->execute("DELETE FROM resampling");
+  for (TileResampling& row : errors) {
+    row.of.source = patch.source_numbers.at(static_cast<std::size_t>(row.of.source));
+    put_row(row);
+  }
+}
+
+void PlanetWriter::put_row(const TileResampling& row) {
+  sql_->resampling.bind(1, row.key)
+      .bind(2, std::int64_t{row.of.source})
+      .bind(3, row.of.error.posts)
+      .bind(4, row.of.error.max_m)
+      .bind(5, row.of.error.rms_m)
+      .bind(6, checksum(row));
+  sql_->resampling.step();
 }
 
 PlanetWriter::~PlanetWriter() {
@@ -205,15 +221,7 @@ void PlanetWriter::put_node(const NodeRow& row) {
 
 void PlanetWriter::put_resampling(std::span<const TileResampling> rows) {
   write([&] {
-    for (const TileResampling& row : rows) {
-      sql_->resampling.bind(1, row.key)
-          .bind(2, std::int64_t{row.of.source})
-          .bind(3, row.of.error.posts)
-          .bind(4, row.of.error.max_m)
-          .bind(5, row.of.error.rms_m)
-          .bind(6, checksum(row));
-      sql_->resampling.step();
-    }
+    for (const TileResampling& row : rows) put_row(row);
   });
 }
 
@@ -245,6 +253,11 @@ std::set<std::int64_t> PlanetWriter::image_keys() {
 std::vector<LevelSummary> PlanetWriter::levels(std::size_t posts) {
   const std::lock_guard lock(mutex_);
   return summarize_levels(*partial_.db, posts);
+}
+
+std::vector<TileResampling> PlanetWriter::resampling() {
+  const std::lock_guard lock(mutex_);
+  return read_resampling(*partial_.db);
 }
 
 std::map<std::int64_t, Bytes> PlanetWriter::checkpoints() {

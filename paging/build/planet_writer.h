@@ -69,6 +69,7 @@ class PlanetWriter {
   void put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed);
   // Stores or replaces resampling errors of tiles, all of them or none.
   void put_resampling(std::span<const TileResampling> rows);
+  std::vector<TileResampling> resampling();  // in order of key and source
   // Replaces rows of the tile index, all of them or none.
   void replace_nodes(std::span<const NodeRow> rows);
 
@@ -98,6 +99,7 @@ class PlanetWriter {
   void commit_when_due();
   void commit();
   void renumber_sources(const PatchStart& patch);
+  void put_row(const TileResampling& row);
   std::optional<Bytes> find(Statement& statement, const lod::TileKey& key, std::int64_t seed);
   Bytes read(Statement& statement, const lod::TileKey& key, std::int64_t seed);
 

@@ -57,6 +57,15 @@ ResamplingError ResamplingSum::error() const {
   return {max_m, kUnit_m * std::sqrt(squares / static_cast<double>(posts)), posts};
 }
 
+ResamplingSum sum_of(const ResamplingError& error) {
+  ResamplingSum sum;
+  sum.max_m = error.max_m;
+  sum.posts = error.posts;
+  const double units = std::min(error.rms_m, kLargest_m) / kUnit_m;
+  set(sum, static_cast<Wide>(units * units * static_cast<double>(error.posts)));
+  return sum;
+}
+
 bool ShardMeta::operator==(const ShardMeta& o) const {
   return id.number == o.id.number && id.of == o.id.of && mesh_ratio == o.mesh_ratio &&
          resampling == o.resampling;

@@ -35,6 +35,9 @@ struct ResamplingSum {
   bool operator==(const ResamplingSum&) const = default;
 };
 
+// Returns a sum with this error, to 1e-12 of its mean square.
+ResamplingSum sum_of(const ResamplingError& error);
+
 // Sums of resampling errors by level and by index into PlanetMeta::sources; the index is -1 in shards of builders
 // before revision 6, which did not tell sources apart.
 using ResamplingSums = std::map<std::pair<int, int>, ResamplingSum>;

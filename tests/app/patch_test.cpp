@@ -63,8 +63,7 @@ class PatchCommand : public AppTest {
     Words full_words{"build", "-o", "full.vpe", "--force"};
     for (const json& word : patched["arguments"]) full_words.push_back(word);
     const json full = json_of(full_words);
-    for (const char* key :
-         {"identity", "sources", "by_level", "arguments", "image_sources", "resampling_rms_m"})
+    for (const char* key : {"identity", "sources", "arguments", "image_sources", "highest_m"})
       EXPECT_EQ(patched[key], full[key]) << key;
     EXPECT_GT(patched["tiles_kept"].get<int>(), 0);
     EXPECT_EQ(full["tiles_kept"], 0);

@@ -6,6 +6,8 @@
 
 #include "mars/embedded/embedded.h"
 #include "mars/sources/source_checks.h"
+#include "relief/files/relief_file.h"
+#include "relief/relief_source.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/planet/source_mask.h"
 #include "vpe/base/number.h"
@@ -28,12 +30,31 @@ double embedded_finest_m(const paging::BuildOptions& options) {
   return options.regions.empty() ? 0.0 : options.finest_spacing_m;
 }
 
+void add_reliefs(const BuildRequest& request, double radius_m, RequestedSources& sources) {
+  std::shared_ptr<const mars::ElevationSource>& ground = sources.combined.source;
+  for (const std::string& path : request.dems) {
+    if (!relief::is_relief_path(path)) continue;
+    try {
+      sources.reliefs.push_back(
+          relief::place(relief::read_relief_file(path), radius_m, relief::ground_of(ground)));
+    } catch (const mars::SourceError&) {
+      throw;
+    } catch (const std::runtime_error& e) {
+      const std::string what = e.what();
+      throw mars::SourceError(what.starts_with(path) ? what : path + ": " + what);
+    }
+    ground = relief::with_relief(ground, sources.reliefs.back(),
+                                 relief::relief_info(path, sources.reliefs.back().placed().size()));
+  }
+}
+
 }  // namespace
 
 void add_build_request(CLI::App& command, BuildRequest& request) {
   command.add_option(
       "DEM", request.dems,
-      "Elevation rasters in any format of GDAL, or 'embedded'; at each place the finest one counts");
+      "Elevation rasters in any format of GDAL, or 'embedded'; at each place the finest one counts. Files of "
+      "reliefs by formulas (*.relief.toml) change the ground of all rasters, in their order");
   command.add_option("--image", request.images, "Image rasters, or 'embedded'")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -152,10 +173,16 @@ RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions&
   const mars::EmbeddedOptions embedded{.finest_m = embedded_finest_m(options), .detail = has_detail};
 
   RequestedSources sources;
-  for (const std::string& path : request.dems)
+  for (const std::string& path : request.dems) {
+    if (relief::is_relief_path(path)) continue;
     sources.dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded) : mars::open_elevation(path));
+  }
+  if (sources.dems.empty() && !request.dems.empty())
+    throw UsageError(request.dems.front() +
+                     ": reliefs change the ground of a raster; name one too, or 'embedded'");
   apply_masks(arguments.masks, sources.dems);
   sources.combined = combine_sources(sources.dems, arguments, options);
+  add_reliefs(request, options.radius_m, sources);
   for (const std::string& path : request.images) {
     sources.images.push_back(is_embedded(path) ? mars::embedded_image(embedded) : mars::open_image(path));
     mars::check_body(sources.images.back()->infos().front(), options.radius_m);

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "paging/build/builder.h"
+#include "relief/relief.h"
 #include "vpe/app/planet/build_sources.h"
 
 namespace vpe::app {
 
 struct BuildRequest {
-  std::vector<std::string> dems;
+  std::vector<std::string> dems;  // rasters and files of reliefs
   std::vector<std::string> images;
   std::vector<std::string> regions;  // WEST,SOUTH,EAST,NORTH
   SourceArguments sources;
@@ -39,10 +40,12 @@ std::vector<std::string> files_of(const BuildRequest& request);
 
 // Holds the opened sources of a request.
 struct RequestedSources {
-  std::vector<std::shared_ptr<const mars::ElevationSource>> dems;  // by BuildRequest::dems, as opened
-  std::vector<std::shared_ptr<const mars::ImageSource>> images;    // by BuildRequest::images
-  mars::Combined combined;                                         // of `dems`
-  std::shared_ptr<const mars::ImageSource> image;                  // of `images`; null if there are none
+  std::vector<std::shared_ptr<const mars::ElevationSource>>
+      dems;                                                      // the rasters of BuildRequest::dems, as opened
+  std::vector<relief::Relief> reliefs;                           // the files of reliefs among them
+  std::vector<std::shared_ptr<const mars::ImageSource>> images;  // by BuildRequest::images
+  mars::Combined combined;                                       // of `dems`, changed by `reliefs`
+  std::shared_ptr<const mars::ImageSource> image;                // of `images`; null if there are none
 };
 
 // Opens the sources and sets the options of the build that the request decides. Throws UsageError, mars::SourceError.

@@ -83,8 +83,22 @@ paging::ChangedIn elevation_changes(const RequestedSources& before, const Reques
     for (std::size_t added = known; added < now.dems.size(); ++added)
       if (mars::resolution_m(*now.dems[n]) < mars::resolution_m(*now.dems[added])) changed[n] = true;
   }
-  return [inside = within(now.dems, changed), warped = std::move(warped)](const mars::Cap& cap) {
-    return inside(cap) || std::ranges::any_of(warped, [&](const mars::Cap& w) {
+  // Reliefs that were added, and those whose ground at their place is another now.
+  std::vector<relief::Relief> added(now.reliefs.begin() + static_cast<std::ptrdiff_t>(before.reliefs.size()),
+                                    now.reliefs.end());
+  std::vector<relief::PlacedRelief> moved;
+  for (std::size_t n = 0; n < before.reliefs.size(); ++n) {
+    const auto& is = now.reliefs[n].placed();
+    const auto& was = before.reliefs[n].placed();
+    for (std::size_t p = 0; p < is.size(); ++p)
+      if (is[p].zero_m() != was[p].zero_m()) moved.push_back(is[p]);
+  }
+  const auto is_reshaped = [added = std::move(added), moved = std::move(moved)](const mars::Cap& cap) {
+    return std::ranges::any_of(added, [&](const relief::Relief& r) { return r.touches(cap); }) ||
+           std::ranges::any_of(moved, [&](const relief::PlacedRelief& r) { return r.touches(cap); });
+  };
+  return [is_reshaped, inside = within(now.dems, changed), warped = std::move(warped)](const mars::Cap& cap) {
+    return inside(cap) || is_reshaped(cap) || std::ranges::any_of(warped, [&](const mars::Cap& w) {
              return mars::angle_between_rad(w.centre, cap.centre) <= w.radius_rad + cap.radius_rad;
            });
   };

@@ -6,6 +6,7 @@
 #include "mars/remote/gdal_remote.h"
 #include "paging/build/build_inputs.h"
 #include "paging/planet/planet_database.h"
+#include "relief/files/relief_file.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/program.h"
@@ -94,6 +95,7 @@ BuildRequest patched_request(BuildRequest request, const PatchArguments& argumen
                              const paging::PlanetMeta& meta) {
   for (const std::string& dem : arguments.dems) {
     request.dems.push_back(dem);
+    if (relief::is_relief_path(dem)) continue;
     if (!arguments.mask.empty()) request.sources.masks.push_back(dem + "=" + arguments.mask);
     if (!arguments.alignment.empty()) request.sources.alignments.push_back(dem + "=" + arguments.alignment);
     if (!arguments.datum.empty()) request.sources.datums.push_back(dem + "=" + arguments.datum);
@@ -179,8 +181,10 @@ void add_patch(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<PatchArguments>();
   CLI::App* command = add_command(program, "patch", "Add rasters to a finished planet file", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file that 'vpe build' made")->required();
-  command->add_option("DEM", arguments->dems,
-                      "Elevation rasters to add; at each place the finest raster of all counts");
+  command->add_option(
+      "DEM", arguments->dems,
+      "Elevation rasters to add; at each place the finest raster of all counts. Files of reliefs by formulas "
+      "(*.relief.toml) dig and build");
   command->add_option("--image", arguments->images, "Image rasters to add")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -209,6 +213,7 @@ void add_patch(CLI::App& program, Common& common) {
                {{"a new strip, into a new file", "vpe patch gale.vpe strip.tif -o gale2.vpe"},
                 {"only its trusted part, without its tilt; the file itself is replaced at the end",
                  "vpe patch gale.vpe strip.tif --mask trusted.tif --align plane -o gale.vpe"},
+                {"a landing pad by formulas", "vpe patch gale.vpe pad.relief.toml -o gale2.vpe"},
                 {"a new picture of the same ground", "vpe patch gale.vpe --image ortho.tif -o gale2.vpe"}});
   command->callback([arguments, &common] { patch(*arguments, common); });
 }
