@@ -17,6 +17,8 @@ namespace {
 constexpr double kTrenchSlope_deg = 45;
 constexpr double kDamSlope_deg = 30;
 constexpr double kReposeSlope_deg = 33;
+constexpr double kMostPartsOfSide = 16;
+constexpr int kMostOctavesOfPosts = 5;  // finer ones do not ask for posts
 
 double corner_distance_m(const Rect& rect) { return radii_of(rect).high; }
 
@@ -36,6 +38,11 @@ void set_area(const ReliefSpec& spec, double falloff_m, ReliefShapes& out) {
 double smaller_side_m(const ReliefSpec& spec) {
   if (spec.radius_m) return *spec.radius_m;
   return std::min(spec.length_m.value(), spec.width_m.value_or(spec.length_m.value()));
+}
+
+// Returns the smallest part of an area with a border. A narrow border does not ask for posts without end.
+double part_of_border_m(double falloff_m, double side_m) {
+  return std::clamp(falloff_m, side_m / kMostPartsOfSide, side_m);
 }
 
 bool is_added(const ReliefSpec& spec) { return spec.mode.value_or(usual_mode(spec.kind)) == Mode::kAdd; }
@@ -73,7 +80,7 @@ ReliefShapes ramp(const ReliefSpec& spec) {
   const double falloff_m = spec.falloff_m.value_or(*spec.width_m / 4);
   out.height = std::make_shared<RampShape>(*spec.length_m, spec.start_m, spec.end_m);
   set_area(spec, falloff_m, out);
-  out.part_m = std::min(falloff_m, smaller_side_m(spec));
+  out.part_m = part_of_border_m(falloff_m, smaller_side_m(spec));
   return out;
 }
 
@@ -82,7 +89,7 @@ ReliefShapes pad(const ReliefSpec& spec) {
   const double falloff_m = spec.falloff_m.value_or(smaller_side_m(spec) / 4);
   out.height = std::make_shared<LevelShape>(0);
   set_area(spec, falloff_m, out);
-  out.part_m = std::min(falloff_m, smaller_side_m(spec));
+  out.part_m = part_of_border_m(falloff_m, smaller_side_m(spec));
   return out;
 }
 
@@ -132,17 +139,18 @@ ReliefShapes flood(const ReliefSpec& spec, std::vector<glm::dvec2> corners_m) {
   ReliefShapes out;
   out.height = std::make_shared<LevelShape>(0);
   if (spec.radius_m) {
-    const double falloff_m = std::min(spec.falloff_m.value_or(*spec.radius_m / 100), *spec.radius_m);
+    const double falloff_m = std::min(spec.falloff_m.value_or(*spec.radius_m / 20), *spec.radius_m);
     out.weight = std::make_shared<CircleWeight>(*spec.radius_m - falloff_m, falloff_m);
     out.reach_m = *spec.radius_m;
-    out.part_m = falloff_m;
+    out.part_m = part_of_border_m(falloff_m, *spec.radius_m);
     return out;
   }
   for (const glm::dvec2& corner : corners_m) out.reach_m = std::max(out.reach_m, radius_of(corner.x, corner.y));
   const Rect support = PolygonWeight(corners_m, 1).support();
   const double extent_m = std::max(support.x1_m - support.x0_m, support.y1_m - support.y0_m);
-  out.part_m = spec.falloff_m.value_or(std::max(extent_m / 200, kLeastLength_m));
-  out.weight = std::make_shared<PolygonWeight>(std::move(corners_m), out.part_m);
+  const double falloff_m = spec.falloff_m.value_or(std::max(extent_m / 40, kLeastLength_m));
+  out.weight = std::make_shared<PolygonWeight>(std::move(corners_m), falloff_m);
+  out.part_m = part_of_border_m(falloff_m, std::max(extent_m / 2, kLeastLength_m));
   return out;
 }
 
@@ -156,7 +164,7 @@ ReliefShapes noise(const ReliefSpec& spec) {
   ReliefShapes out;
   out.height = std::make_shared<NoiseShape>(size);
   set_area(spec, spec.falloff_m.value_or(smaller_side_m(spec) / 2), out);
-  out.part_m = std::ldexp(size.wavelength_m, 1 - size.octaves);
+  out.part_m = std::ldexp(size.wavelength_m, 1 - std::min(size.octaves, kMostOctavesOfPosts));
   return out;
 }
 

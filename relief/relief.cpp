@@ -12,20 +12,30 @@ namespace relief {
 
 namespace {
 
-// A batch with at most so many reliefs near it asks them one after the other for each place.
+// All places of a batch ask all reliefs near it if these are few, or if this share of them is near its centre.
 constexpr std::size_t kFewReliefs = 32;
+constexpr std::size_t kShareOfBatch = 4;
+
+ReliefChange unchanged(double ground_m) { return {ground_m, false, false}; }
+
+// Applies a relief to what those before it left.
+void apply(const PlacedRelief& relief, const glm::dvec3& direction, ReliefChange& all) {
+  const ReliefChange one = relief.change(direction, all.height_m);
+  all.height_m = one.height_m;
+  all.decides = all.decides || one.decides;
+}
+
+void finish(double ground_m, ReliefChange& all) {
+  all.is_changed = !std::isnan(ground_m) && all.height_m != ground_m;
+  all.decides = all.decides && all.is_changed;
+}
 
 // Applies reliefs in order.
 ReliefChange changed_by(const std::vector<PlacedRelief>& placed, std::span<const std::uint32_t> numbers,
                         const glm::dvec3& direction, double ground_m) {
-  ReliefChange all{ground_m, false, false};
-  for (const std::uint32_t n : numbers) {
-    const ReliefChange one = placed[n].change(direction, all.height_m);
-    all.height_m = one.height_m;
-    all.decides = all.decides || one.decides;
-  }
-  all.is_changed = !std::isnan(ground_m) && all.height_m != ground_m;
-  all.decides = all.decides && all.is_changed;
+  ReliefChange all = unchanged(ground_m);
+  for (const std::uint32_t n : numbers) apply(placed[n], direction, all);
+  finish(ground_m, all);
   return all;
 }
 
@@ -56,11 +66,22 @@ ReliefChange Relief::change(const glm::dvec3& direction, double ground_m) const 
 void Relief::change(std::span<const glm::dvec3> directions, std::span<const double> ground_m,
                     std::span<ReliefChange> changes) const {
   if (directions.empty()) return;
+  const mars::Cap cap = cap_of(directions);
   std::vector<std::uint32_t> near;
-  tree_.find(cap_of(directions), near);
-  const bool are_few = near.size() <= kFewReliefs;
+  std::vector<std::uint32_t> at_centre;
+  tree_.find(cap, near);
+  tree_.find({cap.centre, 0}, at_centre);
+  if (near.size() <= kFewReliefs || at_centre.size() >= near.size() / kShareOfBatch) {
+    // Each relief is fetched once for all places.
+    for (std::size_t i = 0; i < directions.size(); ++i) changes[i] = unchanged(ground_m[i]);
+    for (const std::uint32_t n : near) {
+      for (std::size_t i = 0; i < directions.size(); ++i) apply(placed_[n], directions[i], changes[i]);
+    }
+    for (std::size_t i = 0; i < directions.size(); ++i) finish(ground_m[i], changes[i]);
+    return;
+  }
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    if (!are_few) tree_.find({directions[i], 0}, near);
+    tree_.find({directions[i], 0}, near);
     changes[i] = changed_by(placed_, near, directions[i], ground_m[i]);
   }
 }

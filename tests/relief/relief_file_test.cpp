@@ -263,6 +263,19 @@ TEST(ReliefSpecs, KeysBelongToTheirKinds) {
   EXPECT_EQ(spec.seed, 7);
 }
 
+TEST(ReliefSpecs, TheGuideHasEveryKeyAndAnExampleThatCanBeRead) {
+  const std::vector<std::uint8_t> bytes =
+      vpe::base::read_file(std::filesystem::path(VPE_SOURCE_DIR) / "docs/guide/relief.md", 1 << 20);
+  const std::string guide(bytes.begin(), bytes.end());
+  for (const vpe::core::KeyInfo& key : relief_keys().infos())
+    EXPECT_NE(guide.find("`" + std::string(key.name) + "`"), std::string::npos) << key.name;
+  const std::size_t begin = guide.find("```toml\n") + 8;
+  const std::vector<ReliefSpec> example =
+      parse_relief_toml(guide.substr(begin, guide.find("```", begin) - begin), "relief.md");
+  EXPECT_EQ(example.size(), 5U);
+  EXPECT_NO_THROW(place(example, mars::kMarsRadius_m, [](const glm::dvec3&) { return -4500.0; }));
+}
+
 TEST(ReliefSpecs, PolygonsAreTexts) {
   std::string problem;
   const auto corners = parse_polygon("1,2;3,-4.5;5,6", problem);

@@ -269,6 +269,16 @@ TEST(Reliefs, WantPostsOfAShareOfTheirParts) {
   EXPECT_EQ(relief.spacing_m({mars::direction({9, 2}), 0.001}), std::numeric_limits<double>::infinity());
 }
 
+TEST(Reliefs, NarrowBordersAndFineOctavesDoNotAskForPostsWithoutEnd) {
+  const auto spacing_m = [](const char* line) { return placed({line}).placed()[0].spacing_m(); };
+  EXPECT_EQ(spacing_m("kind=pad lon=1 lat=2 radius=64 falloff=0.01"), 1);
+  EXPECT_EQ(spacing_m("kind=ramp lon=1 lat=2 length=900 width=64 falloff=0.01"), 1);
+  EXPECT_EQ(spacing_m("kind=flood lon=1 lat=2 radius=64 falloff=0.01"), 1);
+  EXPECT_EQ(spacing_m("kind=noise lon=1 lat=2 radius=999 amplitude=1 wavelength=64 octaves=12"), 1);
+  EXPECT_EQ(spacing_m("kind=noise lon=1 lat=2 radius=999 amplitude=1 wavelength=64 octaves=2"), 8);
+  EXPECT_EQ(spacing_m("kind=crater lon=1 lat=2 radius=64"), 2);
+}
+
 TEST(Reliefs, TenThousandStackedAreTheirSum) {
   std::vector<ReliefSpec> specs(10000,
                                 parse_relief_line("kind=crater lon=1 lat=2 radius=500 depth=0.5 rim=0.125"));
