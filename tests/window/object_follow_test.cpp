@@ -1,8 +1,9 @@
-// Tests views of objects in the window, the camera that follows one, and the time of a scene.
+// Tests views of objects in the window, the camera that follows one, the time of a scene, and lines of sight in it.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "tests/window/objects_fixture.h"
@@ -85,6 +86,39 @@ TEST_F(ObjectFollowTest, AFlightGivesTheTime) {
   window_->session().scrub(50);
   settle();
   EXPECT_EQ(window_->drawn()->request.flight_time_s, 50);
+}
+
+TEST_F(ObjectFollowTest, LinesOfSightMeetTheObjectsThatAreShown) {
+  open_above(file());
+  for (const double lon_deg : {18.5, 21.5}) {
+    const glm::dvec2 at = seen({lon_deg, 10});
+    move(at.x, at.y);
+    key("m");
+  }
+  ASSERT_EQ(window_->measure().points().size(), 2U);
+  click("Measure");
+  enter("A (m)##from", "15000");
+  enter("B (m)##to", "15000");
+  const auto sight = [this] {
+    const Measured* measured = window_->measure().measured();
+    if (measured == nullptr || !measured->sight) throw std::runtime_error("nothing was measured");
+    return *measured->sight;
+  };
+  ASSERT_TRUE(sight().obstruction);
+  EXPECT_EQ(sight().obstruction->object, "One");
+  EXPECT_NEAR(sight().obstruction->distance_m, 0.5 * sight().distance_m - 20'000, 1000);
+  // Moved aside, though not saved, it does not obstruct.
+  click("Objects");
+  drag(seen({20, 10}), {0, -250});
+  settle();
+  ASSERT_EQ(copies().size(), 1U);
+  EXPECT_EQ(window_->measure().measured()->request.scene.file, copies()[0].string());
+  EXPECT_TRUE(sight().visible);
+  with_control("z");
+  settle();
+  EXPECT_EQ(window_->measure().measured()->request.scene.file, file().string());
+  ASSERT_TRUE(sight().obstruction);
+  EXPECT_EQ(sight().obstruction->object, "One");
 }
 
 }  // namespace
