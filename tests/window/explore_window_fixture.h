@@ -8,6 +8,7 @@
 #include "tests/paging/planet_fixture.h"
 #include "tests/window/window_fixture.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/scene/scene_sight.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/window/explore_window.h"
 
@@ -30,6 +31,7 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     setup.state = folder_ / "state";
     setup.planet = planet_;
     setup.surface = std::make_shared<const paging::Surface>(planet_, std::size_t{32} << 20);
+    setup.open_scene = app::scene_sight(setup.surface);
     setup.drawn_by = core::drawn_by(backend);
     setup.display.width = width;
     setup.display.height = height;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 #include "tests/explore/terrain_fixture.h"
@@ -198,6 +199,84 @@ TEST_F(MeasurePanelTest, FromHighEnoughTheySeeEachOther) {
   EXPECT_TRUE(panel_->measured()->sight->visible);
   EXPECT_EQ(panel_->measured()->profile, profile);  // not made again
   EXPECT_TRUE(has(text(), "A and B see each other")) << logged_;
+}
+
+// Opens scenes with a tower on each line of sight: 100 m and as many metres as the time has seconds after its beginning.
+explore::OpenScene towers(std::atomic<int>& opened) {
+  return [&opened](const explore::SightScene& scene) {
+    ++opened;
+    if (scene.file == "broken") throw std::runtime_error("broken: line 3");
+    const double at_m = 100 + scene.time_s;
+    const explore::FirstObject tower = [at_m](const glm::dvec3&, const glm::dvec3&, double until_m) {
+      return at_m < until_m ? std::optional(explore::SightObject{at_m, "Tower"}) : std::nullopt;
+    };
+    return explore::SceneSight{tower, true};
+  };
+}
+
+TEST_F(MeasurePanelTest, ObjectsOfTheSceneObstruct) {
+  std::atomic<int> opened{0};
+  panel_ = std::make_unique<MeasurePanel>(
+      shared_, [this] { ++notified_; }, towers(opened));
+  add_both();
+  const std::shared_ptr<const explore::Profile> profile = panel_->measured()->profile;
+  ASSERT_TRUE(panel_->measured()->sight->obstruction);
+  EXPECT_EQ(panel_->measured()->sight->obstruction->object, "");
+  EXPECT_FALSE(has(text(), "Obstructed by")) << logged_;
+  EXPECT_EQ(opened, 0);
+  // Until it is measured again, what was measured before stays.
+  panel_->set_scene({"a"});
+  ASSERT_NE(panel_->measured(), nullptr);
+  settle();
+  const auto expect_tower_at = [&](double distance_m) {
+    const explore::LineOfSight& sight = *panel_->measured()->sight;
+    ASSERT_TRUE(sight.obstruction);
+    EXPECT_EQ(sight.obstruction->object, "Tower");
+    EXPECT_NEAR(sight.obstruction->distance_m, distance_m, 0.01);
+  };
+  expect_tower_at(100);
+  EXPECT_EQ(panel_->measured()->profile, profile);  // not made again
+  EXPECT_TRUE(has(text(), "A and B do not see each other")) << logged_;
+  EXPECT_TRUE(has(text(), "Obstructed by")) << logged_;
+  EXPECT_TRUE(has(text(), "Tower")) << logged_;
+  EXPECT_TRUE(has(text(), "100 m from A")) << logged_;
+  EXPECT_TRUE(has(text(), "above ground, without objects")) << logged_;
+  EXPECT_EQ(opened, 1);
+  panel_->set_scene({"a"});
+  EXPECT_TRUE(panel_->is_at_rest());
+  // Scenes that follow quickly: the last one counts.
+  for (int n = 1; n <= 50; ++n) {
+    panel_->set_scene({"a", 0, 1.0 * n});
+    frame();
+  }
+  settle();
+  expect_tower_at(150);
+  EXPECT_EQ(panel_->measured()->request.scene.time_s, 50);
+  panel_->set_scene({});
+  settle();
+  EXPECT_EQ(panel_->measured()->sight->obstruction->object, "");
+  EXPECT_FALSE(has(text(), "without objects")) << logged_;
+}
+
+TEST_F(MeasurePanelTest, ASceneThatCannotBeReadIsExplained) {
+  std::atomic<int> opened{0};
+  panel_ = std::make_unique<MeasurePanel>(
+      shared_, [this] { ++notified_; }, towers(opened));
+  panel_->set_scene({"broken"});
+  add_both();
+  EXPECT_FALSE(panel_->measured()->sight);
+  EXPECT_NE(panel_->measured()->profile, nullptr);
+  EXPECT_TRUE(has(text(), "broken: line 3")) << logged_;
+  EXPECT_EQ(opened, 1);
+  panel_->set_scene({"a", 1});
+  settle();
+  ASSERT_TRUE(panel_->measured()->sight);
+  EXPECT_EQ(panel_->measured()->sight->obstruction->object, "Tower");
+  // Another surface, and objects no more.
+  panel_->set_surface(shared_);
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  EXPECT_EQ(panel_->measured()->sight->obstruction->object, "");
 }
 
 TEST_F(MeasurePanelTest, ValuesShownAreThoseOfThePresentPoints) {

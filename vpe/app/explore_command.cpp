@@ -24,6 +24,7 @@
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/scene/model_ball.h"
+#include "vpe/app/scene/scene_sight.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/core/appearance/gazetteer.h"
 #include "vpe/explore/command_words.h"
@@ -244,8 +245,9 @@ window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> plane
                                  const StereoMethod& stereo) {
   constexpr std::size_t kSurfaceShare = 8;
   auto surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
-  return {planet, std::move(surface),
-          [planet, common, stereo] { return std::make_unique<WindowPainter>(planet, common, stereo); }};
+  return {planet, surface,
+          [planet, common, stereo] { return std::make_unique<WindowPainter>(planet, common, stereo); },
+          scene_sight(surface)};
 }
 
 // Writes the session file; the scale of letters only if the command line does not say one. Returns "", or what went wrong; there is no file if there is no folder for it.

@@ -113,10 +113,7 @@ std::vector<std::optional<ObjectAnswer>> objects_at(const std::string& file,
     const glm::dvec3 up = mars::direction(places[n]);
     const auto top = objects::first_object(scene, {from_m * up, -up}, from_m);
     if (!top) continue;
-    const objects::Instance instance = scene.instance(top->instance);
-    const std::string& name = scene.names()[instance.name];
-    out[n] = ObjectAnswer{name.empty() ? scene.models()[instance.model]->name() : name,
-                          from_m - top->range_m - surface.planet_radius_m()};
+    out[n] = ObjectAnswer{object_name(scene, top->instance), from_m - top->range_m - surface.planet_radius_m()};
   }
   return out;
 }

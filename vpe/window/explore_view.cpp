@@ -102,6 +102,13 @@ void ExploreWindow::request_image() {
   maker_->request(std::move(request));
 }
 
+// Returns the scene of the images, for lines of sight.
+explore::SightScene ExploreWindow::sight_scene() {
+  explore::SightScene scene{objects_.shown_file(session_), objects_.shown_revision(), objects_.time_s()};
+  if (session_.follows_flight() && session_.player() != nullptr) scene.tracks = session_.player()->tracks();
+  return scene;
+}
+
 // From the flight that plays, else from the motion since the last request.
 std::vector<core::View> ExploreWindow::foreseen_views(const core::View& shown, double soon_s,
                                                       std::vector<core::View>& later) {

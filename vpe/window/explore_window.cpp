@@ -37,7 +37,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       session_(setup_.surface, setup_.session),
       display_(setup_.display),
       map_(setup_.planet, setup_.threads, [] { Display::wake(); }),
-      measure_(setup_.surface, [] { Display::wake(); }),
+      measure_(
+          setup_.surface, [] { Display::wake(); }, setup_.open_scene),
       flight_(setup_.flight_file, setup_.folder),
       places_(setup_.bookmarks),
       search_(explore::PlaceSearch(setup_.places)),
@@ -212,6 +213,7 @@ bool ExploreWindow::step(double wait_s) {
   // The next image is drawn while the last one is shown.
   const bool is_new = take_image();
   request_image();
+  measure_.set_scene(sight_scene());
   if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest() || objects_.is_moving())
     frames_due_ = std::max(frames_due_, 1);
   if (shown_devices_ && shown_devices_ != devices_.states(now_s())) frames_due_ = std::max(frames_due_, 1);
@@ -243,7 +245,7 @@ void ExploreWindow::replace_planet(ShownPlanet next) {
   session_.set_surface(setup_.surface);
   map_.set_planet(setup_.planet);
   if (large_map_ != nullptr) large_map_->set_planet(setup_.planet);
-  measure_.set_surface(setup_.surface);
+  measure_.set_surface(setup_.surface, setup_.open_scene);
   drawing_.set_surface(setup_.surface);
   maker_ = std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); });
   show_message("the planet is complete");

@@ -261,6 +261,7 @@ class ExploreWindow {
   std::optional<mars::LonLat> pointed_place() const;
   bool handle_panel_keys(const Event& event);
   void request_image();
+  explore::SightScene sight_scene();
   std::vector<core::View> foreseen_views(const core::View& shown, double soon_s,
                                          std::vector<core::View>& later);
   bool take_image();  // returns true if there is a new one

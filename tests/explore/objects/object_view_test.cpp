@@ -77,6 +77,45 @@ TEST(ItemBalls, MoveAlongPathsAndEncloseScatters) {
               balls[0].radius_m * (1 + 1e-12));
 }
 
+TEST(ItemBalls, AreOnTheWaysOfAFlightOrGone) {
+  const TerrainQuery ground = hills();
+  const auto balls = [&](const SceneItem& item, double time_s, const std::vector<core::ObjectTrack>* tracks) {
+    return balls_of(item, kModels, rover_ball, ground, time_s, track_of(item, tracks));
+  };
+  objects::Placing placing;
+  placing.place = {30, 40};
+  const SceneItem object = object_at({placing});
+  const SceneItem path{2, objects::PathEntry{"p", 0, {{0, {5, 5}}, {10, {6, 5}}}}};
+  const std::vector<core::ObjectTrack> tracks{{"n", {{0, {0, 0, 7}}, {10, {1, 0, 7}}}, {{20, false}}},
+                                              {"p", {{0, {2, 0}}, {10, {3, 0}}}, {}}};
+  const auto above = [&](mars::LonLat place, double height_m) {
+    const glm::dvec3 up = mars::direction(place);
+    return up * (kRadius_m + ground.height_m(up) + height_m);
+  };
+  for (const double time_s : {0.0, 2.5, 10.0, 19.0}) {
+    const double moved_deg = std::min(time_s / 10, 1.0);
+    ASSERT_EQ(balls(object, time_s, &tracks).size(), 1U);
+    EXPECT_LT(glm::length(balls(object, time_s, &tracks)[0].origin_m - above({moved_deg, 0}, 7)), 1e-5);
+    EXPECT_LT(glm::length(balls(path, time_s, &tracks)[0].origin_m - above({2 + moved_deg, 0}, 0)), 1e-5);
+    EXPECT_LT(glm::length(balls(object, time_s, nullptr)[0].origin_m - above(placing.place, 0)), 1e-5);
+  }
+  EXPECT_TRUE(balls(object, 20, &tracks).empty());
+  // A flight that only shows and hides an object leaves it in its place.
+  const std::vector<core::ObjectTrack> hides{{"n", {}, {{20, false}}}};
+  EXPECT_LT(glm::length(balls(object, 5, &hides)[0].origin_m - above(placing.place, 0)), 1e-5);
+  EXPECT_TRUE(balls(object, 25, &hides).empty());
+  // Ways are of paths and of objects with one place.
+  EXPECT_EQ(track_of(object, &tracks), &tracks[0]);
+  EXPECT_EQ(track_of(path, &tracks), &tracks[1]);
+  EXPECT_EQ(track_of(object_at({placing, placing}), &tracks), nullptr);
+  objects::ScatterEntry scatter;
+  scatter.name = "n";
+  EXPECT_EQ(track_of({3, scatter}, &tracks), nullptr);
+  EXPECT_EQ(track_of(object, nullptr), nullptr);
+  const std::vector<core::ObjectTrack> others{{"other", {}, {}}};
+  EXPECT_EQ(track_of(object, &others), nullptr);
+}
+
 TEST(Pick, MeetsABallWhereItsSurfaceIs) {
   const ItemBall target{{100, 0, 0}, 5, {95, 0, 0}};
   const PickRay ray{{0, 0, 0}, {1, 0, 0}};

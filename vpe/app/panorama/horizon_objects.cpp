@@ -2,18 +2,9 @@
 
 #include "objects/draw/object_skyline.h"
 #include "objects/draw/single_ray.h"
+#include "vpe/app/scene/scene_library.h"
 
 namespace vpe::app {
-
-namespace {
-
-std::string name_of(const objects::Scene& scene, std::uint32_t instance) {
-  const objects::Instance placed = scene.instance(instance);
-  const std::string& name = scene.names()[placed.name];
-  return name.empty() ? scene.models()[placed.model]->name() : name;
-}
-
-}  // namespace
 
 double HorizonObjects::range_m(const glm::dvec3& ray, double ground_m) const {
   const auto met = objects::first_object(*scene, {camera.position_m, ray}, ground_m);
@@ -29,7 +20,7 @@ std::vector<std::string> HorizonObjects::raise(std::vector<panorama::GroundPoint
     const auto top = tops.above(point.direction.azimuth_deg, point.direction.elevation_deg);
     if (!top) return;
     point = panorama::ground_point(camera, {point.direction.azimuth_deg, top->elevation_deg}, top->range_m);
-    names[n] = name_of(*scene, top->instance);
+    names[n] = object_name(*scene, top->instance);
   });
   return names;
 }
@@ -40,7 +31,7 @@ void HorizonObjects::name_hiders(std::vector<panorama::Landmark>& landmarks) con
     if (!l.hidden_by) continue;
     const glm::dvec3 ray = panorama::ray_of(camera, l.centre.direction);
     const auto met = objects::first_object(*scene, {camera.position_m, ray}, kBeyond * l.hidden_by->range_m);
-    if (met) l.hidden_by_name = name_of(*scene, met->instance);
+    if (met) l.hidden_by_name = object_name(*scene, met->instance);
   }
 }
 

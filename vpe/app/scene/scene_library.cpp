@@ -52,6 +52,12 @@ bool is_unchanged(const Stamped& files) {
 
 }  // namespace
 
+std::string object_name(const objects::Scene& scene, std::uint32_t instance) {
+  const objects::Instance placed = scene.instance(instance);
+  const std::string& name = scene.names()[placed.name];
+  return name.empty() ? scene.models()[placed.model]->name() : name;
+}
+
 std::shared_ptr<const objects::Model> SceneLibrary::volume(const std::string& name,
                                                            const objects::VolumeFormula& formula) {
   KnownVolume& known = volumes_[name];
@@ -193,7 +199,7 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
   read(file);
   if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
   const bool has_tracks = tracks != nullptr && !tracks->empty();
-  if (standing_->scene && !has_tracks) return {standing_->scene, standing_->interest};
+  if (standing_->scene && !has_tracks) return {standing_->scene, standing_->interest, false};
   std::vector<objects::Instance> instances = standing_->instances;
   std::vector<core::InterestRegion> interest = standing_->interest;
   std::vector<objects::PathEntry> paths = entries_.paths;
@@ -211,7 +217,8 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
     moving.name = name_index(path.name);
     instances.push_back(moving);
   }
-  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), std::move(interest)};
+  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), std::move(interest),
+          true};
 }
 
 std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes_, {}); }

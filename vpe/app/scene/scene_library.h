@@ -5,6 +5,7 @@
 //   const auto scene = library.scene("gale.scene.toml", settings.exaggeration, time_s);
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -26,7 +27,11 @@ namespace vpe::app {
 struct PlacedScene {
   std::shared_ptr<const objects::Scene> scene;
   std::vector<core::InterestRegion> interest;  // around objects that ask for finer ground
+  bool moves = false;                          // other times may have objects elsewhere
 };
+
+// Returns the name of an instance, or that of its model if it has none; never "".
+std::string object_name(const objects::Scene& scene, std::uint32_t instance);
 
 // Belongs to one thread at a time. Does not depend on what was asked before.
 class SceneLibrary {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "paging/surface/section.h"
 #include "vpe/base/number.h"
@@ -119,11 +120,53 @@ void check(const SightPoint& point, const char* which) {
   }
 }
 
-// Handles vertical lines, which only the surface below could obstruct.
-LineOfSight upright(const paging::Surface& surface, const SightPoint& from, const SightPoint& to) {
+// Describes the part of a line of sight in which things obstruct it.
+struct SightRay {
+  glm::dvec3 camera_m;
+  glm::dvec3 direction;  // unit
+  double begin_m = 0;
+  double end_m = 0;
+};
+
+double end_of_sight_m(double distance_m) { return kSightEnd_m + 1e-8 * distance_m; }
+
+SightRay inner_ray(const glm::dvec3& camera_m, const glm::dvec3& direction, double distance_m) {
+  const double end_m = end_of_sight_m(distance_m);
+  return {camera_m, direction, end_m, distance_m - end_m};
+}
+
+// Returns an object that obstructs a ray before the ground does, at ground_m (infinity: nowhere), or the ground.
+std::optional<Obstruction> first_obstruction(const paging::Surface& surface, const SightRay& ray,
+                                             double ground_m, const FirstObject& first_object) {
+  const double end_m = std::min(ray.end_m, ground_m);
+  if (first_object && end_m > ray.begin_m) {
+    const double until_m = end_m - ray.begin_m;
+    const glm::dvec3 from_m = ray.camera_m + ray.begin_m * ray.direction;
+    std::optional<SightObject> met = first_object(from_m, ray.direction, until_m);
+    if (met && met->range_m < until_m) {
+      const glm::dvec3 point = from_m + met->range_m * ray.direction;
+      return Obstruction{mars::lon_lat(point), ray.begin_m + met->range_m,
+                         glm::length(point) - surface.planet_radius_m(), std::move(met->name)};
+    }
+  }
+  if (!std::isfinite(ground_m)) return std::nullopt;
+  const glm::dvec3 point = ray.camera_m + ground_m * ray.direction;
+  return Obstruction{mars::lon_lat(point), ground_m, surface.at(point).height_m, ""};
+}
+
+// Handles vertical lines, which no ground obstructs, as both ends are above it.
+LineOfSight upright(const paging::Surface& surface, const SightPoint& from, const SightPoint& to,
+                    const FirstObject& first_object) {
   LineOfSight sight;
-  sight.visible = true;
   sight.distance_m = std::abs(to.height_m - from.height_m);
+  if (first_object && sight.distance_m > 2 * end_of_sight_m(sight.distance_m)) {
+    const glm::dvec3 up = mars::direction(from.place);
+    const glm::dvec3 camera_m = (surface.at(up).radius_m + from.height_m) * up;
+    const glm::dvec3 direction = to.height_m > from.height_m ? up : -up;
+    const SightRay ray = inner_ray(camera_m, direction, sight.distance_m);
+    sight.obstruction = first_obstruction(surface, ray, kInfinity, first_object);
+  }
+  sight.visible = !sight.obstruction;
   sight.clearance_m = std::min(from.height_m, to.height_m);
   sight.clearance_error_m = 4e-15 * surface.planet_radius_m();
   sight.clearance_place = from.place;
@@ -133,12 +176,13 @@ LineOfSight upright(const paging::Surface& surface, const SightPoint& from, cons
 
 }  // namespace
 
-LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from, const SightPoint& to) {
+LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from, const SightPoint& to,
+                          const FirstObject& first_object) {
   check(from, "first");
   check(to, "second");
   const glm::dvec3 up = mars::direction(from.place);
   const glm::dvec3 up_there = mars::direction(to.place);
-  if (up == up_there) return upright(surface, from, to);
+  if (up == up_there) return upright(surface, from, to, first_object);
   const double ground_there_m = surface.at(up_there).radius_m;
   const glm::dvec3 camera = (surface.at(up).radius_m + from.height_m) * up;
   const glm::dvec3 target = (ground_there_m + to.height_m) * up_there;
@@ -147,14 +191,11 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   LineOfSight sight;
   sight.distance_m = glm::length(path);
   sight.arc_m = mars::angle_between_rad(up, up_there) * surface.planet_radius_m();
-  const double end_m = kSightEnd_m + 1e-8 * sight.distance_m;
-  const glm::dvec3 ray = path / sight.distance_m;
+  const double end_m = end_of_sight_m(sight.distance_m);
   if (sight.distance_m > 2 * end_m) {
-    const double hit_m = surface.cast(camera, ray, 1.0, {end_m, sight.distance_m - end_m});
-    if (std::isfinite(hit_m)) {
-      const glm::dvec3 point = camera + hit_m * ray;
-      sight.obstruction = Obstruction{mars::lon_lat(point), hit_m, surface.at(point).height_m};
-    }
+    const SightRay ray = inner_ray(camera, path / sight.distance_m, sight.distance_m);
+    const double ground_m = surface.cast(camera, ray.direction, 1.0, {ray.begin_m, ray.end_m});
+    sight.obstruction = first_obstruction(surface, ray, ground_m, first_object);
   }
   sight.visible = !sight.obstruction;
 

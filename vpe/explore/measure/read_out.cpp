@@ -63,6 +63,10 @@ std::string measured_length_text(double length_m) {
   return base::format_display(length_m / 1000, 0) + " km";
 }
 
+std::string coordinates_text(mars::LonLat place) {
+  return base::format_display(place.lon_deg, 5) + ", " + base::format_display(place.lat_deg, 5);
+}
+
 std::vector<ReadOutLine> read_out_lines(const ReadOut& r) {
   const paging::PlaceAnswer& a = r.at;
   std::vector<ReadOutLine> lines;

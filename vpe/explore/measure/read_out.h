@@ -49,4 +49,7 @@ std::vector<ReadOutLine> read_out_lines(const ReadOut& read_out);
 // Returns a measured length with at least three significant digits: "950 m", "12.35 km", "0.42 m".
 std::string measured_length_text(double length_m);
 
+// Returns longitude and latitude with five decimals of a degree: "137.44170, -4.58950".
+std::string coordinates_text(mars::LonLat place);
+
 }  // namespace vpe::explore

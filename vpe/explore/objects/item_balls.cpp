@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "objects/scene/place.h"
+#include "objects/scene/track.h"
 
 namespace vpe::explore {
 
@@ -33,8 +34,18 @@ ItemBall ball_around(const objects::ScatterEntry& scatter, const TerrainQuery& g
 
 }  // namespace
 
+const core::ObjectTrack* track_of(const SceneItem& item, const std::vector<core::ObjectTrack>* tracks) {
+  const bool is_path = std::holds_alternative<objects::PathEntry>(item.entry);
+  if (tracks == nullptr || (!is_path && single_placing(item) == nullptr)) return nullptr;
+  const auto found = std::ranges::find(*tracks, item_name(item), &core::ObjectTrack::name);
+  return found == tracks->end() ? nullptr : &*found;
+}
+
 std::vector<ItemBall> balls_of(const SceneItem& item, const std::vector<objects::ModelEntry>& models,
-                               const ModelBall& model_ball, const TerrainQuery& ground, double time_s) {
+                               const ModelBall& model_ball, const TerrainQuery& ground, double time_s,
+                               const core::ObjectTrack* track) {
+  if (track != nullptr && !core::is_shown(*track, time_s)) return {};
+  const bool has_way = track != nullptr && !track->points.empty();
   const objects::GroundRadius radius_m = [&ground](const glm::dvec3& up) {
     return ground.radius_m + ground.height_m(up);
   };
@@ -44,7 +55,9 @@ std::vector<ItemBall> balls_of(const SceneItem& item, const std::vector<objects:
   }
   if (const auto* path = std::get_if<objects::PathEntry>(&item.entry)) {
     if (path->points.empty() || path->model >= models.size()) return {};
-    return {ball_around(objects::path_instance(*path, time_s, radius_m), model_ball(models[path->model]))};
+    objects::PathEntry moved = *path;
+    if (has_way) moved.points = objects::path_points(*track);
+    return {ball_around(objects::path_instance(moved, time_s, radius_m), model_ball(models[path->model]))};
   }
   const auto& object = std::get<objects::ObjectEntry>(item.entry);
   std::vector<ItemBall> balls;
@@ -53,7 +66,9 @@ std::vector<ItemBall> balls_of(const SceneItem& item, const std::vector<objects:
   const std::size_t count = std::min(object.places.size(), ItemBallLimits::kMostOfItem);
   balls.reserve(count);
   for (std::size_t n = 0; n < count; ++n) {
-    const objects::Placing& placing = object.places[n];
+    const objects::Placing placing =
+        has_way ? objects::placing_at(object.places[n], objects::path_points(*track), time_s)
+                : object.places[n];
     const double size_m = static_cast<double>(ball.radius_m) * placing.scale;
     balls.push_back(ball_around(objects::place_instance(placing, size_m, ground.radius_m, radius_m), ball));
   }

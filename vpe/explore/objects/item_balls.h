@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "objects/model/mesh.h"
+#include "vpe/core/object_track.h"
 #include "vpe/explore/objects/scene_item.h"
 #include "vpe/explore/terrain_query.h"
 
@@ -29,10 +30,16 @@ struct ItemBallLimits {
   static constexpr std::size_t kMostOfItem = 1000;  // replicas; the first ones
 };
 
+// Returns the way that a flight gives an item, among all of its ways (null: none): that of the item's name, if it is a
+// path or an object with one place. Else null.
+const core::ObjectTrack* track_of(const SceneItem& item, const std::vector<core::ObjectTrack>* tracks);
+
 // Returns the balls around an item at a time of its paths, on ground as it is drawn: one for each place, at most
-// kMostOfItem; one around the corners of a scatter. Pure but for the functions.
+// kMostOfItem; one around the corners of a scatter. `track` is what track_of() returns: the item is on that way, or has no
+// ball while it is hidden. Pure but for the functions.
 std::vector<ItemBall> balls_of(const SceneItem& item, const std::vector<objects::ModelEntry>& models,
-                               const ModelBall& model_ball, const TerrainQuery& ground, double time_s);
+                               const ModelBall& model_ball, const TerrainQuery& ground, double time_s,
+                               const core::ObjectTrack* track = nullptr);
 
 // A ray from `camera_m` along the unit direction, up to `until_m`.
 struct PickRay {

@@ -104,7 +104,8 @@ bool ObjectsPanel::handle_press(const Event& event, glm::dvec2 xy, const explore
   if (id == 0) return false;
   select(id);
   const SharedItem item = editor_.find(id);
-  if (explore::single_placing(*item) == nullptr) return false;
+  const core::ObjectTrack* track = explore::track_of(*item, tracks_.get());
+  if (explore::single_placing(*item) == nullptr || (track != nullptr && !track->points.empty())) return false;
   const core::Projected origin = core::project(view, balls(item, session).front().origin_m);
   held_ = Held{id, xy, origin.behind ? glm::dvec2(0, 0) : origin.xy - xy, false};
   return true;
@@ -223,16 +224,17 @@ bool ObjectsPanel::handle_key(const Event& event, explore::Session& session) {
 }
 
 const ObjectsPanel::Balls& ObjectsPanel::balls(const SharedItem& item, const explore::Session& session) {
-  const BallsOf of{&session.surface(), session.settings().values().exaggeration, sizes_.revision()};
+  const BallsOf of{&session.surface(), session.settings().values().exaggeration, sizes_.revision(), tracks_};
   // Items that were edited or deleted leave balls behind.
   if (of != balls_of_ || balls_.size() > 2 * editor_.items().size() + 50) balls_.clear();
   balls_of_ = of;
-  const bool moves = std::holds_alternative<objects::PathEntry>(item->entry);
+  const core::ObjectTrack* track = explore::track_of(*item, tracks_.get());
+  const bool moves = track != nullptr || std::holds_alternative<objects::PathEntry>(item->entry);
   const auto known = balls_.find(item);
   if (known != balls_.end() && !moves) return known->second;
   return balls_[item] = explore::balls_of(
              *item, editor_.models(), [this](const objects::ModelEntry& model) { return sizes_.ball(model); },
-             session.ground(), time_s_);
+             session.ground(), time_s_, track);
 }
 
 std::optional<explore::ItemBall> ObjectsPanel::ball_of(std::uint64_t id, const explore::Session& session) {
@@ -242,19 +244,25 @@ std::optional<explore::ItemBall> ObjectsPanel::ball_of(std::uint64_t id, const e
   return all.empty() ? std::nullopt : std::optional(all.front());
 }
 
+// Leaves the flight, and the ways that it gives to objects.
+void ObjectsPanel::leave_flight(explore::Session& session) {
+  session.leave_flight();
+  tracks_.reset();
+}
+
 void ObjectsPanel::go_to(std::uint64_t id, explore::Session& session) {
+  leave_flight(session);
   const auto ball = ball_of(id, session);
   if (!ball) return;
   follow_.reset();
-  session.leave_flight();
   session.go(explore::pose_at(*ball, explore::usual_offset(*ball, session.pose().yaw_deg), session.ground()));
 }
 
 void ObjectsPanel::follow(std::uint64_t id, explore::Session& session) {
+  leave_flight(session);
   const auto ball = ball_of(id, session);
   if (!ball) return;
   is_placing_ = false;
-  session.leave_flight();
   if (session.mover().is_on_ground()) session.set_mode(explore::MotionMode::kOrbit);
   const explore::ObjectOffset here = explore::offset_of(session.pose(), *ball, session.ground().radius_m);
   const double distance_m =
@@ -272,6 +280,7 @@ void ObjectsPanel::advance(double dt_s, bool moves_by_hand, explore::Session& se
   }
   follows_flight_ = session.follows_flight();
   const explore::FlightPlayer* flight = follows_flight_ ? session.player() : nullptr;
+  tracks_ = flight != nullptr ? flight->tracks() : nullptr;
   if (flight != nullptr) {
     clock_.play(false);
     clock_.set(flight->time_s());

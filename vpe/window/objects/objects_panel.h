@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "vpe/base/file.h"
+#include "vpe/core/object_track.h"
 #include "vpe/explore/files/unsaved_copy.h"
 #include "vpe/explore/objects/item_balls.h"
 #include "vpe/explore/objects/object_view.h"
@@ -60,7 +62,8 @@ class ObjectsPanel {
   // handle it.
   //
   // While objects are placed, a click places one; V does so in the middle of the view, Esc ends it. While the panel is
-  // shown, a press on an object selects it, a drag moves it over the ground, Delete deletes it, Ctrl+S saves the scene.
+  // shown, a press on an object selects it, a drag moves it over the ground unless the flight does, Delete deletes it,
+  // Ctrl+S saves the scene.
   // While an object is followed, drags turn about it, the wheel changes the distance, and Esc ends it.
   bool handle(const Event& event, std::optional<glm::dvec2> xy, bool is_typing, explore::Session& session,
               const core::View& view);
@@ -136,6 +139,7 @@ class ObjectsPanel {
   std::uint64_t item_at(glm::dvec2 xy, const explore::Session& session, const core::View& view);
   const Balls& balls(const explore::SharedItem& item, const explore::Session& session);
   std::optional<explore::ItemBall> ball_of(std::uint64_t id, const explore::Session& session);
+  void leave_flight(explore::Session& session);
   void go_to(std::uint64_t id, explore::Session& session);
   void follow(std::uint64_t id, explore::Session& session);
   // objects_panel.cpp:
@@ -186,12 +190,14 @@ class ObjectsPanel {
   std::uint64_t clock_revision_ = 0;  // of the scene that gave its range
   double time_s_ = 0;
   bool follows_flight_ = false;
+  std::shared_ptr<const std::vector<core::ObjectTrack>> tracks_;  // of objects, by the flight that is followed
   int shown_frame_ = -2;  // ImGui's number of the frame in which the panel was drawn last
   std::map<explore::SharedItem, Balls> balls_;
   struct BallsOf {
     const paging::Surface* surface = nullptr;
     double exaggeration = 1;
     std::uint64_t sizes = 0;
+    std::shared_ptr<const std::vector<core::ObjectTrack>> tracks;
     bool operator==(const BallsOf&) const = default;
   } balls_of_;
   ObjectsActions actions_;

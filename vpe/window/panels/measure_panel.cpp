@@ -10,6 +10,7 @@
 #include "paging/planet/planet_meta.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/measure/sight_text.h"
 #include "vpe/window/panels/file_names.h"
 #include "vpe/window/panels/measure_marks.h"
 #include "vpe/window/panels/profile_plot_view.h"
@@ -22,21 +23,23 @@ namespace {
 constexpr const char* kMeasuring = "measuring \u2026";
 constexpr double kMostHeight_m = 1e9;
 
-std::string coordinates(mars::LonLat place) {
-  return base::format_display(place.lon_deg, 5) + ", " + base::format_display(place.lat_deg, 5);
-}
-
 }  // namespace
 
-MeasurePanel::MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify)
+MeasurePanel::MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify,
+                           explore::OpenScene open_scene)
     : surface_(std::move(surface)),
       notify_(std::move(notify)),
-      measurer_(std::make_unique<Measurer>(surface_, notify_)) {}
+      measurer_(std::make_unique<Measurer>(surface_, notify_, std::move(open_scene))) {}
 
-void MeasurePanel::set_surface(std::shared_ptr<const paging::Surface> surface) {
+void MeasurePanel::set_surface(std::shared_ptr<const paging::Surface> surface, explore::OpenScene open_scene) {
   surface_ = std::move(surface);
-  measurer_ = std::make_unique<Measurer>(surface_, notify_);
+  measurer_ = std::make_unique<Measurer>(surface_, notify_, std::move(open_scene));
   request();
+}
+
+void MeasurePanel::set_scene(explore::SightScene scene) {
+  scene_ = std::move(scene);
+  if (measured_ && measurer_->is_idle() && !is_of_scene(*measured_)) measure();
 }
 
 void MeasurePanel::add(mars::LonLat place) {
@@ -64,12 +67,23 @@ void MeasurePanel::request() {
   measured_.reset();
   marked_.reset();
   measurer_->forget();
-  wanted_ = places_.size() < 2 ? 0 : measurer_->request({places_, from_height_m_, to_height_m_});
+  wanted_ = 0;
+  if (places_.size() >= 2) measure();
 }
+
+void MeasurePanel::measure() { wanted_ = measurer_->request({places_, from_height_m_, to_height_m_, scene_}); }
 
 void MeasurePanel::take() {
   std::optional<Measured> next = measurer_->take();
-  if (next && next->number == wanted_) measured_ = std::move(next);
+  if (!next || next->number != wanted_) return;
+  const bool is_present = is_of_scene(*next);
+  // A former scene may be gone by now.
+  if (is_present || next->error.empty()) measured_ = std::move(next);
+  if (!is_present) measure();
+}
+
+bool MeasurePanel::is_of_scene(const Measured& measured) const {
+  return explore::is_same_sight(measured.request.scene, measured.moves, scene_);
 }
 
 MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
@@ -153,7 +167,7 @@ void MeasurePanel::draw_points(Widgets& widgets) {
     const std::string name = point_name(n);
     if (widgets.button(("x##" + name).c_str(), "remove this point")) gone = n;
     ImGui::SameLine();
-    ImGui::Text("%s   %s", name.c_str(), coordinates(places_[n]).c_str());
+    ImGui::Text("%s   %s", name.c_str(), explore::coordinates_text(places_[n]).c_str());
   }
   if (gone) erase(*gone);
   if (widgets.button("Clear", "remove all points")) clear();
@@ -200,18 +214,10 @@ void MeasurePanel::draw_sight(Widgets& widgets) {
            sight.visible ? first + " and " + last + " see each other"
                          : first + " and " + last + " do not see each other");
   const ValueTable table("sight");
-  table.add("Straight", explore::measured_length_text(sight.distance_m));
-  table.add("Clearance", explore::measured_length_text(sight.clearance_m) + ", " +
-                             explore::measured_length_text(sight.clearance_distance_m) + " from " + first);
-  if (!sight.obstruction) return;
-  table.add("Obstructed at", coordinates(sight.obstruction->place) + "; " +
-                                 explore::measured_length_text(sight.obstruction->distance_m) + " from " +
-                                 first + ", " + base::format_display(sight.obstruction->elevation_m, 1) +
-                                 " m elevation");
-  table.add("Visible for",
-            std::isfinite(sight.needed_height_m)
-                ? last + " at " + explore::measured_length_text(sight.needed_height_m) + " above ground"
-                : "no height of " + last + ": it is too far behind the horizon");
+  const explore::SightEnds ends{first, last, measured_->request.to_height_m,
+                                !measured_->request.scene.file.empty()};
+  for (const explore::ReadOutLine& line : explore::sight_lines(sight, ends))
+    table.add(line.label.c_str(), line.text);
 }
 
 MeasureActions MeasurePanel::draw_profile(Widgets& widgets) {
@@ -247,7 +253,7 @@ MeasureActions MeasurePanel::draw_profile(Widgets& widgets) {
                             (point.nodata ? std::string("no data")
                                           : base::format_display(point.height_m, 1) + " m, slope " +
                                                 base::format_display(point.slope_deg, 1) + "\u00b0") +
-                            "   " + coordinates(point.place))
+                            "   " + explore::coordinates_text(point.place))
                                .c_str());
   } else {
     ImGui::TextDisabled("above %s, a point every %s; %s",

@@ -1,4 +1,4 @@
-// The panel "Measure": place under the cursor, typed places, points, distances, profile, line of sight.
+// The panel "Measure": place under the cursor, typed places, points, distances, profile, line of sight among objects.
 #pragma once
 
 #include <functional>
@@ -31,8 +31,10 @@ struct MeasureActions {
 //   panel.draw_marks(list, session, eye);                             // over the view
 class MeasurePanel {
  public:
-  // Calls `notify` on the measuring thread when a measurement is finished and the window should draw again.
-  MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify);
+  // Calls `notify` on the measuring thread when a measurement is finished and the window should draw again. Calls
+  // `open_scene` there, while a scene is set; empty: objects do not count.
+  MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify,
+               explore::OpenScene open_scene = {});
 
   // Draws the panel inside its tab. `under_cursor` is the place under the cursor in view or map; without one
   // the last place stays.
@@ -46,7 +48,11 @@ class MeasurePanel {
   MeasureActions draw_profile(Widgets& widgets);
 
   // Measures on another surface of the same body from now on. Waits for the measurement that runs.
-  void set_surface(std::shared_ptr<const paging::Surface> surface);
+  void set_surface(std::shared_ptr<const paging::Surface> surface, explore::OpenScene open_scene = {});
+
+  // Sets the scene whose objects lines of sight regard. When it differs, measures the path again; until that is done the
+  // former measurement stays.
+  void set_scene(explore::SightScene scene);
 
   // Adds a point to the path. Ignores invalid places.
   void add(mars::LonLat place);
@@ -68,7 +74,9 @@ class MeasurePanel {
 
  private:
   void request();
+  void measure();
   void take();
+  bool is_of_scene(const Measured& measured) const;
   void draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor);
   void draw_place(MeasureActions& actions, Widgets& widgets);
   void draw_points(Widgets& widgets);
@@ -86,6 +94,7 @@ class MeasurePanel {
   std::string file_ = "profile.csv";
   std::vector<explore::ReadOutLine> read_out_;  // of the cursor's last place
   std::string read_out_error_;
+  explore::SightScene scene_;
   std::uint64_t wanted_ = 0;  // request for the present points; 0: none
   std::optional<Measured> measured_;
   std::optional<mars::LonLat> marked_;

@@ -16,8 +16,10 @@ bool are_same(const std::vector<mars::LonLat>& a, const std::vector<mars::LonLat
 
 }  // namespace
 
-Measurer::Measurer(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify)
+Measurer::Measurer(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify,
+                   explore::OpenScene open_scene)
     : surface_(std::move(surface)),
+      open_scene_(std::move(open_scene)),
       worker_(
           [this](const std::pair<std::uint64_t, MeasureRequest>& next) {
             return measure(next.first, next.second);
@@ -38,8 +40,11 @@ Measured Measurer::measure(std::uint64_t number, const MeasureRequest& request) 
       out.profile = last_.profile;
     else
       out.profile = std::make_shared<const explore::Profile>(explore::make_profile(*surface_, request.places));
+    explore::SceneSight objects;
+    if (open_scene_ && !request.scene.file.empty()) objects = open_scene_(request.scene);
+    out.moves = objects.moves;
     out.sight = explore::line_of_sight(*surface_, {request.places.front(), request.from_height_m},
-                                       {request.places.back(), request.to_height_m});
+                                       {request.places.back(), request.to_height_m}, objects.first_object);
   } catch (const std::exception& e) {
     out.error = e.what();
   }

@@ -12,6 +12,7 @@
 
 #include "paging/planet/planet_file.h"
 #include "paging/surface/surface.h"
+#include "vpe/explore/measure/sight_scene.h"
 #include "vpe/window/workers/painter.h"
 
 namespace vpe::window {
@@ -24,6 +25,9 @@ struct ShownPlanet {
   std::shared_ptr<const paging::PlanetFile> planet;
   std::shared_ptr<const paging::Surface> surface;
   MakePainter make_painter;
+  // Opens scenes of objects on the planet, for lines of sight; called on the thread that measures. Empty: objects do not
+  // count.
+  explore::OpenScene open_scene = {};
 };
 
 // Makes a planet that takes time, and tells the share of the work that is done, from any thread. Returns nullopt once
