@@ -46,6 +46,17 @@ void mark_below(std::unordered_map<std::int64_t, std::uint64_t>& below, std::int
 }  // namespace
 
 void PlanetOverlay::add(const std::shared_ptr<const TilePatch>& patch, std::uint64_t version) {
+  if (!patch->source_numbers.empty()) {
+    const auto renumber = [&](std::vector<int>& numbers) {
+      if (numbers.empty()) {
+        numbers = patch->source_numbers;
+      } else {
+        for (int& number : numbers) number = patch->source_numbers[static_cast<std::size_t>(number)];
+      }
+    };
+    renumber(source_numbers_);
+    for (auto& [row, tile] : tiles_) renumber(tile.source_numbers);
+  }
   for (const PatchTile& tile : patch->tiles) {
     tiles_[tile.row.key] = {patch, &tile, version};
     mark_below(tiles_below_, tile.row.key, version);

@@ -22,6 +22,7 @@ class PlanetOverlay {
     std::shared_ptr<const TilePatch> patch;
     const PatchTile* tile = nullptr;
     std::uint64_t version = 0;
+    std::vector<int> source_numbers = {};  // by number in the tile's row; empty: the same
   };
   struct Image {
     std::shared_ptr<const TilePatch> patch;
@@ -45,6 +46,12 @@ class PlanetOverlay {
   // Return the patched tile of a packed key, or null.
   const Tile* tile(std::int64_t row) const { return find(tiles_, row); }
   const Image* image(std::int64_t row) const { return find(images_, row); }
+  // Returns the numbers in the planet's meta of the sources that a tile names, by the number that is stored of it.
+  // Empty: the same numbers.
+  const std::vector<int>& source_numbers(std::int64_t row) const {
+    const Tile* patched = tile(row);
+    return patched != nullptr ? patched->source_numbers : source_numbers_;
+  }
   // Return the version of the last patch with tiles, or image tiles, of this key or below it; 0: none.
   std::uint64_t tiles_below(std::int64_t row) const { return version_of(tiles_below_, row); }
   std::uint64_t images_below(std::int64_t row) const { return version_of(images_below_, row); }
@@ -68,7 +75,8 @@ class PlanetOverlay {
   std::unordered_map<std::int64_t, Image> images_;
   Versions tiles_below_;
   Versions images_below_;
-  std::vector<Change> changes_;  // oldest first
+  std::vector<Change> changes_;      // oldest first
+  std::vector<int> source_numbers_;  // of tiles of the file
   double lowest_radius_m_ = std::numeric_limits<double>::infinity();
   double highest_radius_m_ = 0;
 };

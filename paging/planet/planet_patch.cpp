@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <unordered_set>
 
 #include "paging/planet/check_meta.h"
@@ -44,6 +45,15 @@ void check_patch_meta(const PlanetMeta& base, const PlanetMeta& meta) {
   if (!std::isfinite(meta.lowest_radius_m) || !std::isfinite(meta.highest_radius_m))
     refuse("its bounds of the radius are not finite");
   if (meta.sources.size() < base.sources.size()) refuse("it lacks sources that the planet's tiles name");
+}
+
+void check_source_numbers(const PlanetMeta& base, const TilePatch& patch) {
+  const std::vector<int>& numbers = patch.source_numbers;
+  if (numbers.empty()) return;
+  const bool ascends = std::ranges::adjacent_find(numbers, std::ranges::greater_equal()) == numbers.end();
+  if (numbers.size() != base.sources.size() || !ascends || numbers.front() < 0 ||
+      numbers.back() >= static_cast<int>(patch.meta.sources.size()))
+    refuse("its numbers of the planet's sources are not one for each, ascending");
 }
 
 void check_row(const NodeRow& row, const lod::TileKey& key, const PlanetMeta& meta) {
@@ -167,6 +177,8 @@ std::string patched_identity(const std::string& base, const TilePatch& patch) {
     put(static_cast<std::int64_t>(list->size()));
     for (const auto& [key, sum] : *list) put(key), put(sum);
   }
+  put(static_cast<std::int64_t>(patch.source_numbers.size()));
+  for (const int number : patch.source_numbers) put(number);
   const std::string of_meta = to_rows(meta).at(kMetaChecksumKey);
   all.insert(all.end(), of_meta.begin(), of_meta.end());
   char text[17];
@@ -195,6 +207,7 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> 
       file_(base.file_ ? base.file_ : base.shared_from_this()),
       connections_([this] { return std::make_unique<Connection>(*this); }) {
   check_patch_meta(base.meta_, meta_);
+  check_source_numbers(base.meta_, *patch);
   try {
     tree_ = std::make_unique<lod::TileTree>(merged_tiles(*base.tree_, *patch), meta_.tile, meta_.radius_m,
                                             meta_.lowest_radius_m);

@@ -28,6 +28,16 @@ std::optional<Bytes> verified(Statement& statement, std::int64_t row, const std:
   return Bytes(data.begin(), data.end());
 }
 
+// Returns false for a source that has no number.
+bool renumber(std::vector<int>& sources, const std::vector<int>& numbers) {
+  if (numbers.empty()) return true;
+  for (int& source : sources) {
+    if (source >= static_cast<int>(numbers.size())) return false;
+    source = numbers[static_cast<std::size_t>(source)];
+  }
+  return true;
+}
+
 }  // namespace
 
 const PatchTile* PlanetFile::patched_tile(std::int64_t row) const {
@@ -91,6 +101,8 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     const auto sources = source_indices(stored.sources);
     if (!sources) throw PlanetError(damaged(path_, key, "list of sources '" + stored.sources + "'"));
     out.source = *sources;
+    if (is_patched() && !renumber(out.source, overlay_->source_numbers(row)))
+      throw PlanetError(damaged(path_, key, "no such source"));
     out.coarser_neighbour_mask = stored.coarser_neighbour_mask;
     const std::vector<std::int32_t> quanta = decode_heights(stored.packed, meta_.tile.posts());
     out.posts.key = key;
@@ -166,6 +178,16 @@ TileSources PlanetFile::sources(const lod::TileKey& key) const {
       }
       return packed;
     });
+    if (is_patched()) {
+      const std::vector<int>& numbers = overlay_->source_numbers(row);
+      bool all = renumber(out.of_tile, numbers);
+      for (SourceResampling& of : out.resampling) {
+        std::vector<int> one{of.source};
+        all = renumber(one, numbers) && all;
+        of.source = one.front();
+      }
+      if (!all) throw PlanetError(damaged(path_, key, "no such source"));
+    }
     for (const int source : out.of_tile)
       if (source >= static_cast<int>(meta_.sources.size()))
         throw PlanetError(damaged(path_, key, "no such source"));

@@ -35,9 +35,11 @@ struct TilePatch {
   std::vector<PatchTile> tiles;
   std::vector<PatchImage> images;
   // Describes the planet with the patch: bounds of its radius, counts, levels (they may be empty), sources. Body,
-  // radius, datum, shape, tile shape and quantum are the planet's, and the numbers of the planet's sources keep their
-  // meaning. `identity` does not count.
+  // radius, datum, shape, tile shape and quantum are the planet's. `identity` does not count.
   PlanetMeta meta;
+  // The number in meta.sources of each of the planet's elevation sources, ascending; tiles that the patch leaves name
+  // them so from then on. Empty: they keep their numbers, and new sources come after them.
+  std::vector<int> source_numbers;
 };
 
 }  // namespace paging

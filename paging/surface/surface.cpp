@@ -92,12 +92,15 @@ double Surface::middle_line(int level, std::int32_t index) const {
 void Surface::change_planet(std::shared_ptr<const PlanetFile> planet) {
   require_same_grid(*planet_, *planet);
   planet_ = std::move(planet);
+  sources_.clear();  // the patch may number sources anew
 }
 
 std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double exaggeration) const {
   const TileVersion version = this->version(key);
   auto tile = cache_.get(version, [&] {
-    auto made = std::make_shared<const SurfaceTile>(prepare_tile(planet_->heights(key)));
+    TileHeights heights = planet_->heights(key);
+    heights.source.clear();  // numbers of the planet that is read, and not of its patches; sources() has them
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
