@@ -16,17 +16,10 @@
 #include "paging/build/partial_planet_file.h"
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
+#include "paging/planet/tile_payload.h"
 #include "paging/planet/tile_sources.h"
 
 namespace paging {
-
-// Holds everything that the file stores of a tile.
-struct TilePayload {
-  Bytes heights;
-  Bytes nodata;               // empty when every post has data
-  Bytes origin;               // encode_origin(); empty when all posts with data have one source
-  std::vector<Bytes> meshes;  // by variant
-};
 
 // Writes and reads back the tiles of a build. Members may be called from any thread; a lock lets one run at a
 // time. They throw DatabaseError (disk full, another build writes the same file, ...). After the first error

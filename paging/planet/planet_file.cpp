@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
 #include "paging/planet/check_meta.h"
 #include "paging/planet/planet_connection.h"
+#include "paging/planet/planet_overlay.h"
 
 namespace paging {
 
@@ -18,9 +20,15 @@ std::shared_ptr<const PlanetFile> PlanetFile::open(const std::string& path, Befo
 
 PlanetFile::~PlanetFile() = default;
 
+std::uint64_t PlanetFile::next_version() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 PlanetFile::PlanetFile(const std::string& path, BeforeRead before_read)
     : path_(path),
       before_read_(std::move(before_read)),
+      version_(next_version()),
       connections_([this] { return std::make_unique<Connection>(*this); },
                    {.reset = [](Connection& connection) { connection.reset(); }}) {
   std::error_code error;
@@ -47,6 +55,10 @@ PlanetFile::PlanetFile(const std::string& path, BeforeRead before_read)
 }
 
 Database PlanetFile::connect() const {
+  if (is_patched()) {
+    throw PlanetError(path_ +
+                      ": is patched in memory, and so has no file of its own; connect to the planet under it");
+  }
   Database db = open_planet_database(path_);
   Statement sum(db, "SELECT value FROM meta WHERE key = ?");
   if (!sum.bind(1, std::string_view(kMetaChecksumKey)).step() || sum.text(0) != meta_checksum_)
@@ -67,9 +79,7 @@ void PlanetFile::read_index(const Database& db) {
     const std::vector<int> sources = *source_indices(row.sources);
     if (!sources.empty() && std::ranges::max(sources) >= static_cast<int>(meta_.sources.size()))
       throw damage("the tile index is wrong at row " + std::to_string(row.key) + ": no such source");
-    tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner,
-                     row.posts_terms ? lod::StatedTerms(*row.posts_terms) : lod::StatedTerms(),
-                     std::move(row.variants), row.slope});
+    tiles.push_back(tile_info(std::move(row)));
   }
   if (static_cast<std::int64_t>(tiles.size()) != meta_.tiles) {
     throw damage(std::to_string(tiles.size()) + " of " + std::to_string(meta_.tiles) +
@@ -91,8 +101,17 @@ void PlanetFile::read_index(const Database& db) {
   while (masks.step()) {
     const auto key = lod::unpack(masks.integer(0));
     if (!key) throw damage("nodata mask for a tile that does not exist");
-    nodata_keys_.push_back(masks.integer(0));
-    for (lod::TileKey at = *key; at.level > 0;) nodata_keys_.push_back(lod::pack(at = lod::parent(at)));
+    mask_keys_.push_back(masks.integer(0));
+  }
+  set_nodata();
+}
+
+void PlanetFile::set_nodata() {
+  std::sort(mask_keys_.begin(), mask_keys_.end());
+  nodata_keys_ = mask_keys_;
+  for (const std::int64_t row : mask_keys_) {
+    for (lod::TileKey at = *lod::unpack(row); at.level > 0;)
+      nodata_keys_.push_back(lod::pack(at = lod::parent(at)));
   }
   std::sort(nodata_keys_.begin(), nodata_keys_.end());
   nodata_keys_.erase(std::unique(nodata_keys_.begin(), nodata_keys_.end()), nodata_keys_.end());

@@ -13,9 +13,14 @@
 #include "paging/planet/planet_meta.h"
 #include "paging/planet/sqlite.h"
 #include "paging/planet/tile_sources.h"
+#include "paging/planet/tile_version.h"
 #include "vpe/base/object_pool.h"
 
 namespace paging {
+
+class PlanetOverlay;
+struct PatchTile;
+struct TilePatch;
 
 // Holds what a planet file stores of a tile, except its meshes.
 struct TileHeights {
@@ -42,7 +47,7 @@ struct ImageTile {
 //   const std::shared_ptr<const PlanetFile> planet = PlanetFile::open("mars.vpe");
 //   const lod::TileInfo& tile = planet->tree().deepest(lod::tile_at(mars::chart_point(direction), 8));
 //   const TileHeights heights = planet->heights(tile.key);
-class PlanetFile {
+class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
  public:
   // Opens the file and reads meta and the tile index. Throws PlanetError for a file that does not exist, is of
   // another kind or of a newer major format, or is incomplete or damaged.
@@ -52,10 +57,34 @@ class PlanetFile {
   static std::shared_ptr<const PlanetFile> open(const std::string& path, BeforeRead before_read = {});
   ~PlanetFile();
 
+  // Returns the planet with a patch (tile_patch.h): it has the patch's tiles from memory and all others from this
+  // planet's connections, and its tree, meta and identity are those of the whole. This planet stays as it is; a
+  // patched planet can be patched again. Takes memory for the patch and for an index of all tiles. Throws PlanetError
+  // with what is wrong with the patch: a tile twice, a missing or a stray child, an inner tile made a finest one,
+  // payloads that are no tile's, errors that do not nest, a meta of other tiles or of another planet. Like an opened
+  // file it may still have borders that do not meet, which verify() finds.
+  std::shared_ptr<const PlanetFile> with(std::shared_ptr<const TilePatch> patch) const;
+  bool is_patched() const { return overlay_ != nullptr; }
+
+  // Returns a number that no other planet of this process has, and that is larger than that of the planet under it.
+  std::uint64_t version() const { return version_; }
+  // Returns the number of the last planet with which a page of the tile changed, among this one and those under it.
+  // Pages of one tile and one number are equal. For kImage, `key` must be that of an image tile.
+  std::uint64_t version(const lod::TileKey& key, MadeOf made_of = MadeOf::kTile) const {
+    return overlay_ == nullptr ? version_ : overlay_version(key, made_of);
+  }
+  // Returns the number of the last planet whose patch may have changed which of the tile's posts the sun shines on,
+  // wherever the sun is: ground hides the sun from posts as far away as both can rise above the horizon. With another
+  // exaggeration than 1, any patch counts.
+  std::uint64_t shadow_version(const lod::TileKey& key, double exaggeration) const {
+    return overlay_ == nullptr ? version_ : overlay_shadow_version(key, exaggeration);
+  }
+
   // Opens a connection of the caller's own to the same planet. Throws PlanetError if the path belongs to another
-  // planet now; DatabaseError.
+  // planet now, and for a patched planet, which is in no file; DatabaseError.
   Database connect() const;
 
+  // Returns the file's path; for a patched planet that of the file under it.
   const std::string& path() const { return path_; }
   const PlanetMeta& meta() const { return meta_; }
   const lod::TileTree& tree() const { return *tree_; }
@@ -83,7 +112,13 @@ class PlanetFile {
  private:
   struct Connection;
   PlanetFile(const std::string& path, BeforeRead before_read);
+  PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch);
+  static std::uint64_t next_version();
   void read_index(const Database& db);
+  void set_nodata();  // from mask_keys_
+  std::uint64_t overlay_version(const lod::TileKey& key, MadeOf made_of) const;
+  std::uint64_t overlay_shadow_version(const lod::TileKey& key, double exaggeration) const;
+  const PatchTile* patched_tile(std::int64_t row) const;  // null: none
   // Returns what fetch(connection) returns, if the file was not written to until then.
   template <class Read>
   auto read(const Read& fetch) const;
@@ -94,8 +129,13 @@ class PlanetFile {
   std::string meta_checksum_;  // differs between planets
   std::unique_ptr<lod::TileTree> tree_;
   std::vector<std::int64_t> image_keys_;   // sorted
-  std::vector<std::int64_t> nodata_keys_;  // of tiles with nodata posts and of all above them, sorted
-  mutable vpe::base::ObjectPool<Connection> connections_;
+  std::vector<std::int64_t> mask_keys_;    // of tiles with nodata posts, sorted
+  std::vector<std::int64_t> nodata_keys_;  // of these and of all above them, sorted
+  std::uint64_t version_ = 0;
+  // Of a patched planet: the planet that has the connections, and what lies over it. Else null.
+  std::shared_ptr<const PlanetFile> file_;
+  std::shared_ptr<const PlanetOverlay> overlay_;
+  mutable vpe::base::ObjectPool<Connection> connections_;  // unused in a patched planet
 };
 
 }  // namespace paging

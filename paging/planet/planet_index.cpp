@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_database.h"
@@ -14,6 +15,16 @@ namespace {
 constexpr std::int64_t kEdgeMasks = 16;
 
 }  // namespace
+
+lod::TileInfo tile_info(NodeRow row) {
+  return {*lod::unpack(row.key),
+          row.min_m,
+          row.max_m,
+          row.inner,
+          row.posts_terms ? lod::StatedTerms(*row.posts_terms) : lod::StatedTerms(),
+          std::move(row.variants),
+          row.slope};
+}
 
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows) {
   Statement nodes(db,

@@ -94,6 +94,9 @@ struct NodeRow {
 // Returns the numbers of NodeRow::sources, or nullopt if it is not a list of numbers from 0 on.
 std::optional<std::vector<int>> source_indices(const std::string& sources);
 
+// Converts a row to the tile of the tree. Expects a key that a tile has.
+lod::TileInfo tile_info(NodeRow row);
+
 // Returns the intervals of the grid that a tile's meshes are made on: an inner tile is meshed over its
 // children's posts.
 inline int mesh_intervals(const lod::TileShape& shape, bool inner) {

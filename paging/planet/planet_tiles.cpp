@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "paging/planet/planet_connection.h"
+#include "paging/planet/planet_overlay.h"
 #include "vpe/core/image/image.h"
 
 namespace paging {
@@ -27,12 +28,29 @@ std::optional<Bytes> verified(Statement& statement, std::int64_t row, const std:
   return Bytes(data.begin(), data.end());
 }
 
+// Returns false for a source that has no number.
+bool renumber(std::vector<int>& sources, const std::vector<int>& numbers) {
+  if (numbers.empty()) return true;
+  for (int& source : sources) {
+    if (source >= static_cast<int>(numbers.size())) return false;
+    source = numbers[static_cast<std::size_t>(source)];
+  }
+  return true;
+}
+
 }  // namespace
+
+const PatchTile* PlanetFile::patched_tile(std::int64_t row) const {
+  if (!is_patched()) return nullptr;
+  const PlanetOverlay::Tile* found = overlay_->tile(row);
+  return found == nullptr ? nullptr : found->tile;
+}
 
 template <class Read>
 auto PlanetFile::read(const Read& fetch) const {
+  auto& connections = is_patched() ? file_->connections_ : connections_;
   for (int n = 0; n < kReadTries; ++n) {
-    auto connection = connections_.acquire();
+    auto connection = connections.acquire();
     auto result = fetch(*connection);
     if (connection->is_current()) return result;
     connection.discard();
@@ -57,10 +75,16 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     std::string sources;
     Bytes packed;
     std::optional<Bytes> mask;
+    static Stored of(const PatchTile& tile) {
+      const Bytes& nodata = tile.payload.nodata;
+      return {tile.row.coarser_neighbour_mask, tile.row.sources, tile.payload.heights,
+              nodata.empty() ? std::nullopt : std::optional(nodata)};
+    }
   };
   TileHeights out;
   try {
-    const Stored stored = read([&](Connection& connection) {
+    const PatchTile* patched = patched_tile(row);
+    const Stored stored = patched != nullptr ? Stored::of(*patched) : read([&](Connection& connection) {
       Stored found;
       connection.node.bind(1, row);
       if (!connection.node.step()) throw PlanetError(damaged(path_, key, "not in the index"));
@@ -77,6 +101,8 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     const auto sources = source_indices(stored.sources);
     if (!sources) throw PlanetError(damaged(path_, key, "list of sources '" + stored.sources + "'"));
     out.source = *sources;
+    if (is_patched() && !renumber(out.source, overlay_->source_numbers(row)))
+      throw PlanetError(damaged(path_, key, "no such source"));
     out.coarser_neighbour_mask = stored.coarser_neighbour_mask;
     const std::vector<std::int32_t> quanta = decode_heights(stored.packed, meta_.tile.posts());
     out.posts.key = key;
@@ -100,6 +126,13 @@ PackedMesh PlanetFile::mesh(const lod::TileKey& key, int variant) const {
   const lod::TileInfo* tile = tree_->find(key);
   if (tile == nullptr) throw PlanetError(damaged(path_, key, "not in the index"));
   try {
+    if (const PatchTile* patched = patched_tile(row)) {
+      const std::vector<Bytes>& meshes = patched->payload.meshes;
+      if (variant < 0 || variant >= static_cast<int>(meshes.size()))
+        throw PlanetError(damaged(path_, key, "mesh " + std::to_string(variant) + " is missing"));
+      return decode_mesh(meshes[static_cast<std::size_t>(variant)],
+                         mesh_intervals(meta_.tile, tile->has_children));
+    }
     const auto packed = read([&](Connection& connection) {
       connection.mesh.bind(1, row).bind(2, static_cast<std::int64_t>(variant));
       return verified(connection.mesh, row + variant, path_, key, "mesh");
@@ -117,7 +150,14 @@ TileSources PlanetFile::sources(const lod::TileKey& key) const {
   const std::int64_t row = lod::pack(key);
   TileSources out;
   try {
-    const auto origin = read([&](Connection& connection) {
+    const PatchTile* patched = patched_tile(row);
+    const auto of_patch = [&]() -> std::optional<Bytes> {
+      out.of_tile = *source_indices(patched->row.sources);
+      out.resampling = patched->resampling;
+      if (patched->payload.origin.empty()) return std::nullopt;
+      return patched->payload.origin;
+    };
+    const auto origin = patched != nullptr ? of_patch() : read([&](Connection& connection) {
       connection.node.bind(1, row);
       if (!connection.node.step()) throw PlanetError(damaged(path_, key, "not in the index"));
       const auto sources = source_indices(connection.node.text(1));
@@ -138,6 +178,16 @@ TileSources PlanetFile::sources(const lod::TileKey& key) const {
       }
       return packed;
     });
+    if (is_patched()) {
+      const std::vector<int>& numbers = overlay_->source_numbers(row);
+      bool all = renumber(out.of_tile, numbers);
+      for (SourceResampling& of : out.resampling) {
+        std::vector<int> one{of.source};
+        all = renumber(one, numbers) && all;
+        of.source = one.front();
+      }
+      if (!all) throw PlanetError(damaged(path_, key, "no such source"));
+    }
     for (const int source : out.of_tile)
       if (source >= static_cast<int>(meta_.sources.size()))
         throw PlanetError(damaged(path_, key, "no such source"));
@@ -157,10 +207,12 @@ ImageTile PlanetFile::image(const lod::TileKey& key) const {
   if (before_read_) before_read_(key);
   const std::int64_t row = lod::pack(key);
   try {
-    const auto packed = read([&](Connection& connection) {
-      connection.image.bind(1, row);
-      return verified(connection.image, row, path_, key, "image");
-    });
+    const PlanetOverlay::Image* patched = is_patched() ? overlay_->image(row) : nullptr;
+    const auto packed =
+        patched != nullptr ? std::optional(patched->image->jpeg) : read([&](Connection& connection) {
+          connection.image.bind(1, row);
+          return verified(connection.image, row, path_, key, "image");
+        });
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));
     vpe::core::RgbImage decoded =
         vpe::core::decode_jpeg(*packed, std::int64_t{kTexelsPerSide} * kTexelsPerSide);

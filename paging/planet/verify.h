@@ -39,7 +39,8 @@ using VerifyProgress = std::function<void(double fraction)>;
 
 // Reads the whole file and checks checksums, codecs, the database's own structure, and that posts and meshes
 // of neighbours and of parents agree to the bit. (Opening the file has checked that errors nest.) Reports a
-// damaged tile as a problem, not as an exception. Throws only what progress() throws.
+// damaged tile as a problem, not as an exception. Of a patched planet it reads all tiles, but no database. Throws
+// only what progress() throws.
 //
 // Typical usage:
 //   const VerifyReport report = verify(*PlanetFile::open(path), {.deep_tiles = 100});

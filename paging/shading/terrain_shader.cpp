@@ -79,6 +79,7 @@ bool needs_scale(const vpe::core::Appearance& appearance, bool has_image) {
 TerrainShader::TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
                              const ShaderBudgetShares& shares)
     : planet_(std::move(planet)),
+      shares_(shares),
       surface_(planet_, share_of(shares.surface, budget_bytes)),
       heights_(share_of(shares.heights, budget_bytes)),
       normals_(share_of(shares.normals, budget_bytes)),
@@ -88,8 +89,29 @@ std::size_t TerrainShader::bytes_resident() const {
   return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
 }
 
+void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes) {
+  surface_.change_planet(planet);
+  planet_ = std::move(planet);
+  heights_.set_limit(share_of(shares_.heights, budget_bytes));
+  normals_.set_limit(share_of(shares_.normals, budget_bytes));
+  images_.set_limit(share_of(shares_.images, budget_bytes));
+}
+
+std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key, MadeOf made_of,
+                              const ShadingParams& params) {
+  const std::uint64_t version = planet.version(key, made_of);
+  if (!params.lit || !params.shadows || !planet.is_patched()) return version;
+  return std::max(version, planet.shadow_version(key, params.exaggeration));
+}
+
+TerrainShader::NormalKey TerrainShader::normal_key(const lod::TileKey& key, const ShadingParams& params) const {
+  return {{key, shading_version(*planet_, key, MadeOf::kBorders, params)},
+          params.exaggeration,
+          params.lit && params.shadows ? params.sun : glm::dvec3(0)};
+}
+
 std::shared_ptr<const TileHeights> TerrainShader::heights(const lod::TileKey& key) const {
-  return heights_.get(key, [&] {
+  return heights_.get({key, planet_->version(key)}, [&] {
     auto made = std::make_shared<const TileHeights>(planet_->heights(key));
     const std::size_t bytes =
         sizeof(*made) + made->posts.height_m.capacity() * sizeof(double) + made->nodata.capacity() / 8;
@@ -98,7 +120,7 @@ std::shared_ptr<const TileHeights> TerrainShader::heights(const lod::TileKey& ke
 }
 
 std::shared_ptr<const ImageTile> TerrainShader::image(const lod::TileKey& key) const {
-  return images_.get(key, [&] {
+  return images_.get({key, planet_->version(key, MadeOf::kImage)}, [&] {
     auto made = std::make_shared<const ImageTile>(planet_->image(key));
     const std::size_t bytes = sizeof(*made) + made->texels.capacity() * sizeof(vpe::base::Rgb);
     return std::pair(std::move(made), bytes);
@@ -120,7 +142,7 @@ std::shared_ptr<const NormalTile> TerrainShader::held_normals(const lod::TileKey
 }
 
 std::shared_ptr<const ImageTile> TerrainShader::held_image(const lod::TileKey& key) const {
-  return images_.find(key);
+  return images_.find({key, planet_->version(key, MadeOf::kImage)});
 }
 
 lod::TileKey TerrainShader::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }

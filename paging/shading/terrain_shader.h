@@ -98,7 +98,12 @@ struct ShaderBudgetShares {
   double images = 0.15;
 };
 
-// Colours the terrain of a planet file. Any thread may call any member. Keeps within the budget, except for
+// Returns the version of a page of a tile that is made with a shading: PlanetFile::version(), and where shadows are
+// cast that of the ground that may cast them.
+std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key, MadeOf made_of,
+                              const ShadingParams& params);
+
+// Colours the terrain of a planet file. Any thread may call any const member. Keeps within the budget, except for
 // the newest tile of each kind.
 //
 // Typical usage:
@@ -109,6 +114,10 @@ class TerrainShader {
  public:
   TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
                 const ShaderBudgetShares& shares = {});
+
+  // Goes over to another version of the planet, as PlanetUser::change_planet(), within a new budget. No other member
+  // may run meanwhile, and cursors end.
+  void change_planet(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
 
   // Returns the number of texture intervals over a tile beyond which the data has no more detail.
   int useful_intervals(const lod::TileKey& key, ColourSource colour_source) const;
@@ -167,17 +176,15 @@ class TerrainShader {
     lod::TileKey key;
   };
   struct NormalKey {
-    lod::TileKey key;
+    TileVersion tile;
     double exaggeration;
     glm::dvec3 sun;  // for shadows, else 0
     bool operator==(const NormalKey&) const = default;
   };
-  static NormalKey normal_key(const lod::TileKey& key, const ShadingParams& params) {
-    return {key, params.exaggeration, params.lit && params.shadows ? params.sun : glm::dvec3(0)};
-  }
+  NormalKey normal_key(const lod::TileKey& key, const ShadingParams& params) const;
   struct NormalKeyHash {
     std::size_t operator()(const NormalKey& k) const {
-      return lod::TileKeyHash()(k.key) ^ std::hash<double>()(k.exaggeration + k.sun.x + 3 * k.sun.y);
+      return TileVersionHash()(k.tile) ^ std::hash<double>()(k.exaggeration + k.sun.x + 3 * k.sun.y);
     }
   };
 
@@ -200,10 +207,11 @@ class TerrainShader {
   bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const;
 
   std::shared_ptr<const PlanetFile> planet_;
+  ShaderBudgetShares shares_;
   Surface surface_;  // casts shadows
-  mutable vpe::base::LruCache<lod::TileKey, TileHeights, lod::TileKeyHash> heights_;
+  mutable vpe::base::LruCache<TileVersion, TileHeights, TileVersionHash> heights_;
   mutable vpe::base::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
-  mutable vpe::base::LruCache<lod::TileKey, ImageTile, lod::TileKeyHash> images_;
+  mutable vpe::base::LruCache<TileVersion, ImageTile, TileVersionHash> images_;
 };
 
 }  // namespace paging

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "lod/tree/facet_mask.h"
+#include "paging/planet/planet_user.h"
 
 namespace paging {
 
@@ -88,24 +89,35 @@ double Surface::middle_line(int level, std::int32_t index) const {
                               : mars::face_line(2 * std::int64_t{index} + 1, level + 1);
 }
 
+void Surface::change_planet(std::shared_ptr<const PlanetFile> planet) {
+  require_same_grid(*planet_, *planet);
+  planet_ = std::move(planet);
+  sources_.clear();  // the patch may number sources anew
+}
+
 std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double exaggeration) const {
-  auto tile = cache_.get(key, [&] {
-    auto made = std::make_shared<const SurfaceTile>(prepare_tile(planet_->heights(key)));
+  const TileVersion version = this->version(key);
+  auto tile = cache_.get(version, [&] {
+    TileHeights heights = planet_->heights(key);
+    heights.source.clear();  // numbers of the planet that is read, and not of its patches; sources() has them
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
-  return exaggerated(std::move(tile), exaggeration);
+  return exaggerated(version, std::move(tile), exaggeration);
 }
 
 std::shared_ptr<const SurfaceTile> Surface::held_tile(const lod::TileKey& key, double exaggeration) const {
-  auto tile = cache_.find(key);
-  return tile ? exaggerated(std::move(tile), exaggeration) : nullptr;
+  const TileVersion version = this->version(key);
+  auto tile = cache_.find(version);
+  return tile ? exaggerated(version, std::move(tile), exaggeration) : nullptr;
 }
 
-std::shared_ptr<const SurfaceTile> Surface::exaggerated(std::shared_ptr<const SurfaceTile> tile,
+std::shared_ptr<const SurfaceTile> Surface::exaggerated(const TileVersion& version,
+                                                        std::shared_ptr<const SurfaceTile> tile,
                                                         double exaggeration) const {
   if (exaggeration == 1.0 || tile->data.coarser_neighbour_mask == 0) return tile;
-  return exaggerated_.get({tile->data.posts.key, exaggeration}, [&] {
+  return exaggerated_.get({version, exaggeration}, [&] {
     TileHeights heights = tile->data;
     put_on_coarser_edges(heights, planet_radius_m(), exaggeration);
     auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
@@ -128,7 +140,7 @@ lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& poin
 }  // namespace
 
 std::shared_ptr<const TileSources> Surface::sources(const lod::TileKey& key) const {
-  return sources_.get(key, [&] {
+  return sources_.get(version(key), [&] {
     auto made = std::make_shared<const TileSources>(planet_->sources(key));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);

@@ -35,7 +35,7 @@ struct SurfacePoint {
 };
 
 // Samples and casts against the surface of a planet file, which it reads tile by tile into a cache. Any thread
-// may call any member. Results do not depend on the cache's state.
+// may call any const member. Results do not depend on the cache's state.
 //
 // Typical usage:
 //   const Surface surface(PlanetFile::open("mars.vpe"), 256 << 20);
@@ -45,6 +45,9 @@ class Surface {
  public:
   // Keeps at most about `budget_bytes` of decoded tiles. Smaller: tiles are read again more often.
   Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
+
+  // Goes over to another version of the planet, as PlanetUser::change_planet(). No other member may run meanwhile.
+  void change_planet(std::shared_ptr<const PlanetFile> planet);
 
   const PlanetFile& planet() const { return *planet_; }
   double planet_radius_m() const { return planet_->radius_m(); }
@@ -103,24 +106,26 @@ class Surface {
   double middle_line(int level, std::int32_t index) const;
 
  private:
-  std::shared_ptr<const SurfaceTile> exaggerated(std::shared_ptr<const SurfaceTile> tile,
+  TileVersion version(const lod::TileKey& key) const { return {key, planet_->version(key)}; }
+  std::shared_ptr<const SurfaceTile> exaggerated(const TileVersion& version,
+                                                 std::shared_ptr<const SurfaceTile> tile,
                                                  double exaggeration) const;
 
   std::shared_ptr<const PlanetFile> planet_;
   std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
-  mutable vpe::base::LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;
+  mutable vpe::base::LruCache<TileVersion, SurfaceTile, TileVersionHash> cache_;
 
-  mutable vpe::base::LruCache<lod::TileKey, TileSources, lod::TileKeyHash> sources_;
+  mutable vpe::base::LruCache<TileVersion, TileSources, TileVersionHash> sources_;
 
   // Exaggerated tiles are kept only beside coarser ones: all others are the same at every exaggeration.
   struct Exaggerated {
-    lod::TileKey key;
+    TileVersion tile;
     double exaggeration;
     bool operator==(const Exaggerated&) const = default;
   };
   struct ExaggeratedHash {
     std::size_t operator()(const Exaggerated& e) const {
-      return lod::TileKeyHash()(e.key) ^ std::hash<double>()(e.exaggeration);
+      return TileVersionHash()(e.tile) ^ std::hash<double>()(e.exaggeration);
     }
   };
   mutable vpe::base::LruCache<Exaggerated, SurfaceTile, ExaggeratedHash> exaggerated_;

@@ -1,4 +1,5 @@
 #include "vpe/gl/polygon_renderer.h"
+#include "paging/planet/planet_user.h"
 #include "paging/surface/surface.h"
 #include "vpe/core/appearance/sky.h"
 
@@ -48,7 +49,7 @@ glm::vec4 level_tint(int level) {
 // For the few tiles below the camera.
 constexpr std::size_t kSurfaceBytes = std::size_t{4} << 20;
 
-class PolygonRenderer : public core::Renderer {
+class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
  public:
   PolygonRenderer(std::shared_ptr<Context> context, std::shared_ptr<const paging::PlanetFile> planet,
                   const RendererOptions& options)
@@ -68,6 +69,7 @@ class PolygonRenderer : public core::Renderer {
   }
 
   core::DrawResult draw(const core::DrawRequest& request) override;
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet) override;
 
  private:
   void draw_sky(const core::DrawRequest& request, const ClipProjection& clip);
@@ -350,6 +352,14 @@ std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& reque
   has_rough_range_ = ranges;
   result.stats.draw_ms += ms_since(start);
   return nodata;
+}
+
+void PolygonRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  paging::require_same_grid(*planet_, *planet);
+  draws_.clear();
+  scene_.change_planet(planet);
+  surface_.change_planet(planet);
+  planet_ = std::move(planet);
 }
 
 core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {

@@ -35,7 +35,8 @@ inline constexpr double kRangeError = 5e-7;
 // the order in which tiles came. Other images have no holes: coarser tiles replace missing ones. Positions are
 // relative to each tile's centre, the camera is subtracted in double, depth is reversed 32-bit float. The range
 // of a pixel is the distance to the drawn triangle at the pixel's centre, +infinity for the sky. Ranges take
-// passes of their own, with one sample a pixel. Only perspective views can be drawn.
+// passes of their own, with one sample a pixel. Only perspective views can be drawn. The renderer is a
+// paging::PlanetUser too.
 //
 // Typical usage:
 //

@@ -143,12 +143,12 @@ class Resident {
     }
     return gone;
   }
-  // Drops all values whose detail and latest mark fulfil a condition.
+  // Drops all values whose tile, detail and latest mark fulfil a condition.
   template <typename Drop>
   void drop(const Drop& drop) {
     for (auto at = items_.begin(); at != items_.end();) {
       std::erase_if(at->second, [&](const Item& item) {
-        if (!drop(item.detail, item.frame)) return false;
+        if (!drop(at->first, item.detail, item.frame)) return false;
         bytes_ -= item.value->bytes;
         return true;
       });

@@ -73,16 +73,48 @@ const lod::SelectedTile* fallback_of(const lod::Selection& drawn, const lod::Til
 
 TileStreamer::TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options)
     : planet_(std::move(planet)),
+      options_(options),
       memory_(bytes_for_tiles(options.memory_bytes, planet_->tree().bytes())),
       terrain_shader_(std::make_shared<TerrainShader>(planet_, share(kTerrainShaderShare))),
       loader_(planet_, terrain_shader_),
-      load_([this, before = options.before_load](const PageKey& key) {
-        if (before) before(key.tile);
+      load_([this](const PageKey& key) {
+        if (options_.before_load) options_.before_load(key.tile);
         return loader_.load(key);
-      }),
-      pager_(load_,
-             options.threads > 0 ? std::min(options.threads, base::kMaxThreads) : base::default_threads(),
-             share(kLoadedShare)) {}
+      }) {
+  start_pager();
+}
+
+void TileStreamer::start_pager() {
+  pager_.emplace(load_,
+                 options_.threads > 0 ? std::min(options_.threads, base::kMaxThreads) : base::default_threads(),
+                 share(kLoadedShare));
+}
+
+void TileStreamer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  pager_.reset();
+  const std::shared_ptr<const paging::PlanetFile> before = std::exchange(planet_, std::move(planet));
+  memory_ = bytes_for_tiles(options_.memory_bytes, planet_->tree().bytes());
+  terrain_shader_->change_planet(planet_, share(kTerrainShaderShare));
+  loader_ = PageLoader(planet_, terrain_shader_);
+  const auto is_other_texture = [&](const lod::TileKey& tile, const ShadingParams& shading) {
+    return paging::shading_version(*before, tile, paging::MadeOf::kArea, shading) !=
+           paging::shading_version(*planet_, tile, paging::MadeOf::kArea, shading);
+  };
+  const auto is_other_tile = [&](const lod::TileKey& tile) {
+    return planet_->tree().find(tile) == nullptr || before->version(tile) != planet_->version(tile);
+  };
+  meshes_.drop([&](const lod::TileKey& tile, const MeshDetail&, std::uint64_t) { return is_other_tile(tile); });
+  textures_.drop([&](const lod::TileKey& tile, const TextureDetail& t, std::uint64_t) {
+    return is_other_tile(tile) || is_other_texture(tile, *t.shading);
+  });
+  std::erase_if(ground_, [&](const auto& g) { return is_other_tile(g.first); });
+  failures_.clear();
+  coarse_colours_.clear();
+  requests_.clear();
+  requested_.clear();
+  has_new_planet_ = true;
+  start_pager();
+}
 
 bool TileStreamer::begin_frame(const core::DrawRequest& request) {
   ++frame_;
@@ -91,7 +123,8 @@ bool TileStreamer::begin_frame(const core::DrawRequest& request) {
   new_failures_.clear();
   // The material stays that of the images before, so that their meshes serve and their textures are kept.
   wants_textures_ = request.want_colour;
-  return set_shading(request);
+  const bool has_new_planet = std::exchange(has_new_planet_, false);
+  return set_shading(request) || has_new_planet;
 }
 
 bool TileStreamer::is_textured(const lod::TileKey& tile) const {
@@ -134,7 +167,7 @@ bool TileStreamer::set_shading(const core::DrawRequest& request) {
 
 void TileStreamer::drop_other_shadings() {
   if (!wants_textures_ || !std::exchange(has_other_shadings_, false)) return;
-  textures_.drop([&](const TextureDetail& t, std::uint64_t frame) {
+  textures_.drop([&](const lod::TileKey&, const TextureDetail& t, std::uint64_t frame) {
     return t.shading != shading_ && frame != frame_;  // drawn tiles have pointers to those of this frame
   });
 }
@@ -290,19 +323,19 @@ TileStreamer::LoadOutcome TileStreamer::load(std::span<const PageKey> pages, std
   for (const PageKey& page : then) {
     if (!is_resident(page)) wants.push_back({page, urgency()});
   }
-  pager_.want(wants);
+  pager_->want(wants);
   while (!open.empty()) {
-    const Pager::Outcome outcome = pager_.wait(deadline);
+    const Pager::Outcome outcome = pager_->wait(deadline);
     if (outcome == Pager::Outcome::kTimeout) return LoadOutcome::kTimeout;
-    for (Pager::Loaded& page : pager_.take(kTakeAtOnce)) {
+    for (Pager::Loaded& page : pager_->take(kTakeAtOnce)) {
       open.erase(page.key);
       upload(std::move(page), frame_);
     }
     trim();
-    if (pager_.any_failed()) {
+    if (pager_->any_failed()) {
       bool failed = false;
       for (const PageKey& page : open) {
-        if (const auto why = pager_.failure(page)) {
+        if (const auto why = pager_->failure(page)) {
           record_failure(page, *why);
           failed = true;
         }
@@ -334,7 +367,7 @@ void TileStreamer::take_loaded(double limit_ms) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   };
   do {
-    std::vector<Pager::Loaded> pages = pager_.take(kTakeAtOnce);
+    std::vector<Pager::Loaded> pages = pager_->take(kTakeAtOnce);
     if (pages.empty()) break;
     // Those of this view are marked when they are used; those of later views must not outlast them.
     for (Pager::Loaded& page : pages) upload(std::move(page), later_frame());
@@ -345,12 +378,12 @@ void TileStreamer::begin_requests() {
   requests_.clear();
   requested_.clear();
   later_meshes_ = later_textures_ = {};
-  any_failed_ = pager_.any_failed();
+  any_failed_ = pager_->any_failed();
 }
 
 void TileStreamer::request(const PageKey& page, double urgency) {
   if (!is_readable(page.tile) || is_resident(page) || !requested_.insert(page).second) return;
-  if (const auto why = any_failed_ ? pager_.failure(page) : std::nullopt) {
+  if (const auto why = any_failed_ ? pager_->failure(page) : std::nullopt) {
     record_failure(page, *why);
     return;
   }
@@ -442,7 +475,7 @@ bool TileStreamer::request_coarse(std::span<const lod::TileKey> tiles) {
     std::vector<PageKey> pages{mesh_page(tile, need.mesh)};
     if (need.texture != 0) pages.push_back(texture_page(tile, need.texture));
     for (const PageKey& page : pages) {
-      if (is_resident(page, frame_) || (any_failed_ && pager_.failure(page))) continue;
+      if (is_resident(page, frame_) || (any_failed_ && pager_->failure(page))) continue;
       if (!requested_.insert(page).second) continue;
       requests_.push_back({page, -kLater - static_cast<double>(requests_.size())});
       any = true;
@@ -451,10 +484,10 @@ bool TileStreamer::request_coarse(std::span<const lod::TileKey> tiles) {
   return any;
 }
 
-void TileStreamer::send_requests() { pager_.want(std::exchange(requests_, {})); }
+void TileStreamer::send_requests() { pager_->want(std::exchange(requests_, {})); }
 
 void TileStreamer::report(core::DrawResult& result) const {
-  const paging::PagerCounts counts = pager_.counts();
+  const paging::PagerCounts counts = pager_->counts();
   core::FrameStats& s = result.stats;
   s.pages_uploaded = uploaded_;
   s.pages_evicted = evicted_;

@@ -43,6 +43,10 @@ class TileStreamer {
 
   TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options);
 
+  // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). Waits for loads that have
+  // begun. Drops the resident pages that are not the same in both.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
+
   // Begins a frame. Drops what a change of appearance makes useless. A frame without colours needs no textures.
   // Returns true if no resident tile fits any more.
   bool begin_frame(const core::DrawRequest& request);
@@ -131,6 +135,7 @@ class TileStreamer {
   void report(core::DrawResult& result) const;
 
  private:
+  void start_pager();
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   bool has_room(std::size_t frame_bytes, double part) const;
   // Returns the frame in which pages of later views count as used.
@@ -145,6 +150,7 @@ class TileStreamer {
   void record_failure(const PageKey& page, const std::string& why);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
+  RendererOptions options_;
   std::size_t memory_;
   std::shared_ptr<TerrainShader> terrain_shader_;
   PageLoader loader_;
@@ -153,6 +159,7 @@ class TileStreamer {
   TileMaterial material_;
   std::shared_ptr<const ShadingParams> shading_;  // material_.shading, one object while it stays the same
   bool has_other_shadings_ = false;               // textures of earlier ones may be resident
+  bool has_new_planet_ = false;                   // since the last frame
   bool wants_textures_ = true;                    // of this frame
   bool needs_occluders_ = false;                  // meshes are made with them, once a frame has needed them
   core::Appearance scale_appearance_;             // the appearance that scale_ was made for
@@ -186,7 +193,7 @@ class TileStreamer {
   std::int64_t evicted_ = 0;
 
   Pager::Load load_;
-  Pager pager_;  // last, so that it is destroyed first: its threads use the loader
+  std::optional<Pager> pager_;  // last, so that it is destroyed first: its threads use the loader; never empty
 };
 
 }  // namespace vpe::gl

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "paging/planet/planet_user.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
@@ -65,7 +66,7 @@ void cut_out(std::span<const float> values, const core::SubRectangle& part, cons
   }
 }
 
-class RayRenderer : public core::PixelRenderer {
+class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
  public:
   RayRenderer(std::shared_ptr<const paging::PlanetFile> planet, const RayOptions& options)
       : planet_(std::move(planet)),
@@ -81,6 +82,7 @@ class RayRenderer : public core::PixelRenderer {
   core::DrawResult draw(const core::DrawRequest& request) override;
   core::DrawResult draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
                                core::Frame& frame) override;
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet) override;
 
  private:
   static std::size_t share(const RayOptions& options, double part) {
@@ -136,6 +138,7 @@ class RayRenderer : public core::PixelRenderer {
   PixelCaster pixel_caster_;
   SectorCaster hint_sectors_;
   std::optional<double> exaggeration_;        // of the last image
+  bool has_new_planet_ = false;               // since the last image
   std::unordered_set<std::string> reported_;  // failures
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
@@ -355,7 +358,9 @@ void RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& ran
 ReadingRule RayRenderer::reading_rule(const core::DrawRequest& request, bool reads_all) {
   const core::PagingRequest& paging = request.paging;
   const double exaggeration = request.settings.exaggeration;
-  const bool starts_anew = std::exchange(exaggeration_, exaggeration).value_or(exaggeration) != exaggeration;
+  const bool is_exaggerated_anew =
+      std::exchange(exaggeration_, exaggeration).value_or(exaggeration) != exaggeration;
+  const bool starts_anew = std::exchange(has_new_planet_, false) || is_exaggerated_anew;
   if (reads_all) return ReadingRule::always();
   if (paging.wait) return {paging.timeout_s, pool_.threads()};
   if (starts_anew && paging.change_wait_s > 0) return {paging.change_wait_s, pool_.threads()};
@@ -401,6 +406,16 @@ void RayRenderer::finish_paging(const core::DrawRequest& request, const Image& i
   std::vector<TileLoader::Expected> expected;
   if (!request.paging.wait) expected = expected_tiles(request);
   result.settled = !loader_.request(request.view, lacking, expected);
+}
+
+void RayRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  paging::require_same_grid(*planet_, *planet);
+  prefetcher_.stop();
+  loader_.reset();
+  caster_.change_planet(planet);
+  painter_.change_planet(planet);
+  planet_ = std::move(planet);
+  has_new_planet_ = true;
 }
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {

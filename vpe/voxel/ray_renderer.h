@@ -67,7 +67,7 @@ struct RayOptions {
 // renderer start it early. The next request's own paging.next is ignored, so requests never form a chain here.
 //
 // Images do not depend on the number of threads or on what was drawn before. One thread at a time may call
-// draw().
+// draw(). The renderer is a paging::PlanetUser too.
 //
 // Paging: a frame that waits reads its tiles while it casts, on the casting threads, until its time-out has been
 // spent with reading. One that does not wait draws what is held, and loader threads of the renderer's own read

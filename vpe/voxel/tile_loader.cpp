@@ -57,6 +57,13 @@ void TileLoader::load(const Page& page) const {
   }
 }
 
+void TileLoader::reset() {
+  pager_.reset();
+  last_.reset();
+  loaded_.clear();
+  reads_all_ = false;
+}
+
 bool TileLoader::begin(const core::DrawRequest& request) {
   if (!last_ || !is_same_image(*last_, request)) {
     loaded_.clear();

@@ -40,6 +40,10 @@ class TileLoader {
   // `caster` and `painter` must outlive this.
   TileLoader(const RangeCaster& caster, const ImagePainter& painter, int threads);
 
+  // Forgets everything, so that the caster and the painter may go over to another planet. Waits for loads that have
+  // begun.
+  void reset();
+
   // Begins an image. Returns true if it shall read all tiles itself: the loader has loaded them for an image of
   // the same request before, and the caches could not hold all of them at once.
   bool begin(const core::DrawRequest& request);

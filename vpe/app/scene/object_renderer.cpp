@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "objects/draw/composer.h"
+#include "paging/planet/planet_user.h"
 #include "paging/shading/ground_light.h"
 #include "vpe/app/scene/scene_library.h"
 #include "vpe/base/parallel.h"
@@ -85,7 +86,7 @@ core::DrawRequest ground_request(const core::DrawRequest& request,
 }
 
 template <class Base>
-class ObjectRenderer : public Base {
+class ObjectRenderer : public Base, public paging::PlanetUser {
  public:
   ObjectRenderer(std::unique_ptr<Base> ground, std::shared_ptr<const paging::PlanetFile> planet,
                  const ObjectRendererOptions& options)
@@ -105,6 +106,13 @@ class ObjectRenderer : public Base {
     if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
     result.stats.bytes_resident += static_cast<std::int64_t>(pass().bytes());
     return result;
+  }
+
+  // Objects stand on the ground, so they are placed anew.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet) override {
+    paging::change_planet(*ground_, planet);
+    pass_.reset();
+    planet_ = std::move(planet);
   }
 
  protected:

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "paging/planet/planet_user.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
 
 namespace vpe::voxel {
@@ -25,10 +26,28 @@ HeightGridStore::HeightGridStore(std::shared_ptr<const paging::PlanetFile> plane
       grids_(budget_share(budget_bytes, 1.0 - kExactShare)),
       exact_(budget_share(budget_bytes, kExactShare)) {}
 
+void HeightGridStore::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  paging::require_same_grid(*planet_, *planet);
+  planet_ = std::move(planet);
+  failures_.clear();
+  any_failed_ = false;
+}
+
+HeightGridStore::Key HeightGridStore::key(Tile tile, Tile posts_of, LineFamily family,
+                                          double exaggeration) const {
+  const lod::TileKey& of = planet_->tree()[tile].key;
+  const std::uint64_t version = planet_->version(of);
+  if (posts_of == tile) return {{of, version}, of.level, version, family, exaggeration};
+  const lod::TileKey& posts = planet_->tree()[posts_of].key;
+  return {{of, version}, posts.level, planet_->version(posts), family, exaggeration};
+}
+
 template <typename T>
-HeightGridStore::Pointer<T> HeightGridStore::find(Cache<T>& cache, Tile tile, double exaggeration) {
+HeightGridStore::Pointer<T> HeightGridStore::find(Cache<T>& cache, Tile tile, double exaggeration) const {
+  Key wanted = key(tile, tile, kAllFamilies[0], exaggeration);
   for (const LineFamily family : kAllFamilies) {
-    if (auto found = cache.find({tile, tile, family, exaggeration})) return found;
+    wanted.family = family;
+    if (auto found = cache.find(wanted)) return found;
   }
   return nullptr;
 }
@@ -50,7 +69,7 @@ paging::TileHeights HeightGridStore::heights(Tile tile, double exaggeration) con
 
 HeightGridStore::Pointer<float> HeightGridStore::grids(Tile tile, LineFamily family,
                                                        double exaggeration) const {
-  return get(grids_, {tile, tile, family, exaggeration}, [&] {
+  return get(grids_, key(tile, tile, family, exaggeration), [&] {
     if (const auto other = held_grids(tile, exaggeration))
       return std::make_shared<const TileHeightGrids<float>>(*other, family);
     return std::make_shared<const TileHeightGrids<float>>(heights(tile, exaggeration), planet_->radius_m(),
@@ -60,12 +79,12 @@ HeightGridStore::Pointer<float> HeightGridStore::grids(Tile tile, LineFamily fam
 
 HeightGridStore::Pointer<double> HeightGridStore::exact_grids(Tile tile, LineFamily family,
                                                               double exaggeration) const {
-  return get(exact_, {tile, tile, family, exaggeration}, [&] {
+  return get(exact_, key(tile, tile, family, exaggeration), [&] {
     if (const auto other = find(exact_, tile, exaggeration))
       return std::make_shared<const TileHeightGrids<double>>(*other, family);
     const paging::TileHeights posts = heights(tile, exaggeration);
     if (!held_grids(tile, exaggeration)) {
-      get(grids_, {tile, tile, family, exaggeration}, [&] {
+      get(grids_, key(tile, tile, family, exaggeration), [&] {
         return std::make_shared<const TileHeightGrids<float>>(posts, planet_->radius_m(), exaggeration, family);
       });
     }
@@ -85,27 +104,28 @@ HeightGridStore::Pointer<float> HeightGridStore::held_grids(Tile tile, double ex
 }
 
 template <typename T>
-HeightGridStore::Pointer<T> HeightGridStore::fallback(Cache<T>& cache, const Key& key) const {
-  return get(cache, key, [&] {
+HeightGridStore::Pointer<T> HeightGridStore::fallback(Cache<T>& cache, Tile tile, Tile coarser,
+                                                      LineFamily family, double exaggeration) const {
+  return get(cache, key(tile, coarser, family, exaggeration), [&] {
     const lod::TileTree& tree = planet_->tree();
-    const lod::TileInfo& tile = tree[key.tile];
+    const lod::TileInfo& info = tree[tile];
     return std::make_shared<const TileHeightGrids<T>>(
-        *any_grids(key.posts_of, key.exaggeration),
-        FallbackTile{tile.key, tree[key.posts_of].key, tree.shape().intervals(), tile.min_height_m,
-                     tile.max_height_m},
-        planet_->radius_m(), key.exaggeration, key.family);
+        *any_grids(coarser, exaggeration),
+        FallbackTile{info.key, tree[coarser].key, tree.shape().intervals(), info.min_height_m,
+                     info.max_height_m},
+        planet_->radius_m(), exaggeration, family);
   });
 }
 
 HeightGridStore::Pointer<float> HeightGridStore::fallback_grids(Tile tile, Tile coarser, LineFamily family,
                                                                 double exaggeration) const {
-  return fallback(grids_, {tile, coarser, family, exaggeration});
+  return fallback(grids_, tile, coarser, family, exaggeration);
 }
 
 HeightGridStore::Pointer<double> HeightGridStore::exact_fallback_grids(Tile tile, Tile coarser,
                                                                        LineFamily family,
                                                                        double exaggeration) const {
-  return fallback(exact_, {tile, coarser, family, exaggeration});
+  return fallback(exact_, tile, coarser, family, exaggeration);
 }
 
 std::optional<std::string> HeightGridStore::failure(Tile tile) const {

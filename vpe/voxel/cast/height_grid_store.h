@@ -16,12 +16,13 @@
 
 #include "lod/tree/tree.h"
 #include "paging/planet/planet_file.h"
+#include "paging/planet/tile_version.h"
 #include "vpe/base/lru_cache.h"
 #include "vpe/voxel/cast/height_grid.h"
 
 namespace vpe::voxel {
 
-// Any thread may call any member. Returned grids are immutable and live as long as they are held.
+// Any thread may call any const member. Returned grids are immutable and live as long as they are held.
 class HeightGridStore {
  public:
   using Tile = lod::TileTree::Index;
@@ -30,6 +31,10 @@ class HeightGridStore {
 
   // The budget limits the grids that are kept. Smaller: grids are read and made again; larger: more memory.
   HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+
+  // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). No other member may run
+  // meanwhile.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
 
   const paging::PlanetFile& planet() const { return *planet_; }
 
@@ -67,28 +72,31 @@ class HeightGridStore {
   BuildTotals build_totals() const { return {tiles_made_, bytes_made_}; }
 
  private:
+  // Indices of tiles do not outlast a change of the planet.
   struct Key {
-    Tile tile;
-    Tile posts_of;  // `tile`, or the coarser tile that its posts are from
+    paging::TileVersion tile;
+    std::int32_t posts_level;     // of `tile`, or of the ancestor that its posts are from
+    std::uint64_t posts_version;  // of that tile
     LineFamily family;
     double exaggeration;
     bool operator==(const Key&) const = default;
   };
   struct KeyHash {
     std::size_t operator()(const Key& k) const {
-      return ((std::size_t{k.tile} * kFamilies + static_cast<std::size_t>(k.family)) * 0x9e3779b97f4a7c15ULL +
-              k.posts_of) ^
-             std::hash<double>()(k.exaggeration);
+      return (paging::TileVersionHash()(k.tile) * kFamilies + static_cast<std::size_t>(k.family)) *
+                 0x9e3779b97f4a7c15ULL +
+             static_cast<std::size_t>(k.posts_level) + (std::hash<double>()(k.exaggeration) ^ k.posts_version);
     }
   };
+  Key key(Tile tile, Tile posts_of, LineFamily family, double exaggeration) const;
   template <typename T>
   using Cache = vpe::base::LruCache<Key, TileHeightGrids<T>, KeyHash>;
   template <typename T>
-  static Pointer<T> find(Cache<T>& cache, Tile tile, double exaggeration);
+  Pointer<T> find(Cache<T>& cache, Tile tile, double exaggeration) const;
   template <typename T, typename Make>
   Pointer<T> get(Cache<T>& cache, const Key& key, const Make& make) const;
   template <typename T>
-  Pointer<T> fallback(Cache<T>& cache, const Key& key) const;
+  Pointer<T> fallback(Cache<T>& cache, Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
   paging::TileHeights heights(Tile tile, double exaggeration) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;

@@ -88,6 +88,13 @@ class RangeCaster {
   // Returns the error for the planet's own ground.
   double range_error(const core::View& view, double exaggeration) const;
 
+  // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). No other member may run
+  // meanwhile.
+  void change_planet(const std::shared_ptr<const paging::PlanetFile>& planet) {
+    surface_.change_planet(planet);
+    store_.change_planet(planet);
+  }
+
   const paging::Surface& surface() const { return surface_; }
   const HeightGridStore& store() const { return store_; }
   std::size_t bytes_resident() const {

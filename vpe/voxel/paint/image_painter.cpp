@@ -73,6 +73,12 @@ ImagePainter::ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std
       budget_(budget_bytes),
       shader_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
 
+void ImagePainter::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  shader_.change_planet(planet, share(1 - kHeldShare, budget_));
+  planet_ = std::move(planet);
+  failures_.clear();
+}
+
 void ImagePainter::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;

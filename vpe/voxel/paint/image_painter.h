@@ -37,6 +37,10 @@ class ImagePainter {
   // shaded again; larger: more memory.
   ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
+  // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). No other member may run
+  // meanwhile.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
+
   // Paints the drawn part of request.view in any projection, and returns the number of nodata pixels.
   // `range_m` holds metres along the pixels' unit rays, core::kSkyRange for sky; rounding to float changes no
   // colour. Sets all of `colour`, or, unless `wanted` is empty, the pixels where it is not 0. All three hold one entry

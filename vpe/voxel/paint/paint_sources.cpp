@@ -15,6 +15,11 @@ std::optional<std::string> PaintFailures::of(const PaintPage& page) const {
   return at == why_.end() ? std::nullopt : std::optional(at->second);
 }
 
+void PaintFailures::clear() {
+  const std::lock_guard lock(mutex_);
+  why_.clear();
+}
+
 PaintPage posts_page(const lod::TileKey& key, const paging::ShadingParams& shading) {
   return {key, false, shading.exaggeration, shading.lit && shading.shadows ? shading.sun : glm::dvec3(0)};
 }

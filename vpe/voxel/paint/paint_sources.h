@@ -38,6 +38,7 @@ class PaintFailures {
  public:
   void record(const PaintPage& page, const std::string& why);
   std::optional<std::string> of(const PaintPage& page) const;
+  void clear();
 
  private:
   struct Less {
