@@ -121,6 +121,30 @@ TEST_F(PatchCommand, ImagesAreAdded) {
   EXPECT_EQ(patched["image_sources"].size(), 2U);
 }
 
+TEST_F(PatchCommand, ReliefsDigAndBuild) {
+  build();
+  write_text(dir_ / "works.relief.toml",
+             "version = 1\n"
+             "[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = 60000\ndepth_m = 5000\n"
+             "[[relief]]\nkind = \"pad\"\nlon = -60\nlat = 30\nradius_m = 50000\nfalloff_m = 50000\n");
+  const json patched = expect_full({"works.relief.toml"});
+  EXPECT_EQ(patched["illustration"], true);
+  EXPECT_LT(elevation_m("patched.vpe", "24,8"), elevation_m("p.vpe", "24,8") - 4000);
+  // The pad is level, and lies on the ground at its middle.
+  const double middle_m = elevation_m("patched.vpe", "-60,30");
+  EXPECT_NEAR(elevation_m("patched.vpe", "-60.5,30.4"), middle_m, kFacets_m);
+  EXPECT_NEAR(middle_m, elevation_m("p.vpe", "-60,30"), kFacets_m);
+  EXPECT_NEAR(elevation_m("patched.vpe", "-120,-30"), elevation_m("p.vpe", "-120,-30"), 1e-9);
+  // New ground under the pad lifts all of it, also where the new raster has no data.
+  std::filesystem::rename(dir_ / "patched.vpe", dir_ / "p.vpe");
+  write_inset("below.tif", -62, 32, kOff_m);
+  expect_full({"below.tif"});
+  EXPECT_NEAR(elevation_m("patched.vpe", "-60,30"), middle_m + kOff_m, kFacets_m);
+  write_text(dir_ / "bad.relief.toml", "version = 1\n[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = -5\n");
+  expect_failure({"patch", "p.vpe", "bad.relief.toml", "-o", "q.vpe"}, 1, {"bad.relief.toml", "radius"});
+  expect_failure({"build", "works.relief.toml", "-o", "q.vpe"}, 2, {"works.relief.toml", "name one too"});
+}
+
 TEST_F(PatchCommand, PlanetsOfRegionsGetAnother) {
   build({"--region=-40,-10,-20,10", "--spacing", "10000"});
   const Result outside = vpe({"patch", "p.vpe", "strip.tif", "-o", "coarse.vpe"});
