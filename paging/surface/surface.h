@@ -16,7 +16,7 @@ namespace paging {
 
 // Holds a tile ready for sampling and casting.
 struct SurfaceTile {
-  TileHeights data;
+  TileHeights data;  // of Surface::tile(): without `source`, for which there is Surface::sources()
   lod::GridLines lines;
   double min_height_m = 0;
   double max_height_m = 0;
