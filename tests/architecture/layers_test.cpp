@@ -28,9 +28,10 @@ struct Layer {
 };
 
 // Every module that a room of vpe/app may use.
-const std::vector<std::string> kBelowApp{
-    "vpe/base",    "mars",   "vpe/core",  "cull",     "lod",         "objects",    "relief",     "paging",     "scripts",
-    "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/warp"};
+const std::vector<std::string> kBelowApp{"vpe/base",   "mars",      "vpe/core", "cull",        "lod",
+                                         "objects",    "relief",    "paging",   "scripts",     "vpe/overlay",
+                                         "vpe/gl",     "vpe/voxel", "panorama", "vpe/explore", "vpe/report",
+                                         "vpe/window", "vpe/warp"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
   rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
@@ -56,6 +57,8 @@ const std::vector<Layer>& layers() {
       {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
       {"relief", "relief", {"vpe/base", "mars", "vpe/core"}},
+      {"relief/field", "relief", {"vpe/base", "mars", "vpe/core", "relief"}},
+      {"relief/cast", "relief", {"vpe/base", "mars", "vpe/core", "relief", "relief/field"}},
       {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
       {"objects/volumes", "objects", {"vpe/base", "mars", "vpe/core", "objects/model"}},
       {"objects/files",
