@@ -37,6 +37,7 @@ Stack::Stack(std::vector<StackLayer> layers) : layers_(std::move(layers)) {
   if (layers_.size() > kMaxStackLayers)
     throw std::invalid_argument("a stack of " + std::to_string(layers_.size()) + " shapes: at most " +
                                 std::to_string(kMaxStackLayers) + " are allowed");
+  std::vector<Rect> reaches;
   for (const StackLayer& layer : layers_) {
     const std::string name = "layer " + std::to_string(&layer - layers_.data() + 1) + " of a stack ";
     if (layer.shape == nullptr) throw std::invalid_argument(name + "has no shape");
@@ -46,15 +47,15 @@ Stack::Stack(std::vector<StackLayer> layers) : layers_(std::move(layers)) {
     if (!needs_mask && layer.mask != nullptr)
       throw std::invalid_argument(name + "has a mask, but only layers that replace may have one");
     const Rect rect = needs_mask ? layer.mask->support() : layer.shape->support();
-    support_ = reaches_.empty() ? rect : around(support_, rect);
-    reaches_.push_back(reach(layer));
+    support_ = reaches.empty() ? rect : around(support_, rect);
+    reaches.push_back(reach(layer));
   }
+  reaches_ = RectBins(std::move(reaches));
 }
 
 double Stack::height_m(double x_m, double y_m) const {
   double height = 0;
-  for (std::size_t n = 0; n < layers_.size(); ++n) {
-    if (!overlap(reaches_[n], {x_m, y_m, x_m, y_m})) continue;
+  reaches_.visit(Rect{x_m, y_m, x_m, y_m}, [&](std::size_t n) {
     const StackLayer& layer = layers_[n];
     const double own = layer.shape->height_m(x_m, y_m);
     if (layer.compose == Compose::kSum) {
@@ -65,15 +66,14 @@ double Stack::height_m(double x_m, double y_m) const {
       const double share = std::clamp(layer.mask->height_m(x_m, y_m), 0.0, 1.0);
       height = (1 - share) * height + share * own;
     }
-  }
+  });
   return height;
 }
 
 glm::dvec2 Stack::gradient(double x_m, double y_m) const {
   double height = 0;
   glm::dvec2 slope{0, 0};
-  for (std::size_t n = 0; n < layers_.size(); ++n) {
-    if (!overlap(reaches_[n], {x_m, y_m, x_m, y_m})) continue;
+  reaches_.visit(Rect{x_m, y_m, x_m, y_m}, [&](std::size_t n) {
     const StackLayer& layer = layers_[n];
     const double own = layer.shape->height_m(x_m, y_m);
     const glm::dvec2 own_slope = layer.shape->gradient(x_m, y_m);
@@ -90,15 +90,14 @@ glm::dvec2 Stack::gradient(double x_m, double y_m) const {
       slope = (1 - share) * slope + share * own_slope + (own - height) * share_slope;
       height = (1 - share) * height + share * own;
     }
-  }
+  });
   return slope;
 }
 
 Interval Stack::bounds_m(const Rect& rect) const {
   Interval height{0, 0};
   double size = 0;  // of the numbers that were added, for their rounding
-  for (std::size_t n = 0; n < layers_.size(); ++n) {
-    if (!overlap(reaches_[n], rect)) continue;
+  reaches_.visit(rect, [&](std::size_t n) {
     const StackLayer& layer = layers_[n];
     const Interval own = layer.shape->bounds_m(rect);
     size += std::max(std::abs(own.low), std::abs(own.high));
@@ -113,7 +112,7 @@ Interval Stack::bounds_m(const Rect& rect) const {
       height = {std::min(mean(height.low, own.low, share.low), mean(height.low, own.low, share.high)),
                 std::max(mean(height.high, own.high, share.low), mean(height.high, own.high, share.high))};
     }
-  }
+  });
   return widened(height, 1e-15 * size);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "relief/field/rect_bins.h"
 #include "relief/shape.h"
 
 namespace relief {
@@ -26,7 +27,7 @@ struct StackLayer {
 
 inline constexpr std::size_t kMaxStackLayers = 65536;
 
-// Composes shapes. The ground below the first layer is 0. Immutable.
+// Composes shapes. The ground below the first layer is 0. A place costs as much as there are layers near it. Immutable.
 class Stack : public Shape {
  public:
   // Throws std::invalid_argument if a shape is missing, a mask is missing or not asked for, or there are more than
@@ -43,7 +44,7 @@ class Stack : public Shape {
 
  private:
   std::vector<StackLayer> layers_;
-  std::vector<Rect> reaches_;  // of the layers: outside of it a layer changes nothing
+  RectBins reaches_;  // of the layers: outside of it a layer changes nothing
   Rect support_;
 };
 

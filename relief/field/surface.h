@@ -54,15 +54,15 @@ class Surface {
 
 // Make a surface whose shape lies in a plane through `origin_m` and is projected along right x up; null: the base
 // alone. Only the part over `domain` is there. On a sphere or an ellipsoid the shape acts on the half in front of the
-// centre (with (p - centre) . axis >= 0), and the other half is bare: a support that reaches the edge of the half ends
-// there in a wall.
+// centre (with (p - centre) . axis >= 0), and the other half is bare: where the shape is not 0 at the edge of
+// the half, the ground is open by that height.
 Surface parallel_surface(const Base& base, const glm::dvec3& origin_m, const glm::dvec3& right,
                          const glm::dvec3& up, std::shared_ptr<const Shape> shape,
                          const Rect& domain = kEverywhere);
 
 // Makes a surface around a sphere or an ellipsoid, with one shape for each face of a cube (or null), in the order of
-// mars::Face. Their coordinates are metres from -radius_m to radius_m (Chart::cube_face). Shapes that differ on a shared
-// edge end there in a wall. Throws std::invalid_argument for other bases.
+// mars::Face. Their coordinates are metres from -radius_m to radius_m (Chart::cube_face). Where shapes
+// differ on a shared edge the ground is open by the height of the step. Throws std::invalid_argument for other bases.
 Surface cube_surface(const Base& base, double radius_m,
                      const std::array<std::shared_ptr<const Shape>, mars::kFaces>& shapes);
 

@@ -93,6 +93,28 @@ TEST(ReliefStack, GradientsAreThoseOfDifferences) {
   EXPECT_GE(agree, count - 3);
 }
 
+TEST(ReliefStack, ThousandsOfLayersAddUp) {
+  std::vector<StackLayer> layers;
+  std::vector<Rect> rects;
+  samples::Random random(28);
+  for (int n = 0; n < 10000; ++n) {
+    const double x = random.in(-500.0, 500.0);
+    const double y = random.in(-500.0, 500.0);
+    rects.push_back({x, y, x + random.in(1.0, 10.0), y + random.in(1.0, 10.0)});
+    layers.push_back({flat(n % 7, rects.back()), Compose::kSum, nullptr});
+  }
+  const Stack stack(layers);
+  for (int n = 0; n < 300; ++n) {
+    const double x = random.in(-510.0, 510.0);
+    const double y = random.in(-510.0, 510.0);
+    double expected = 0;
+    for (std::size_t k = 0; k < rects.size(); ++k)
+      if (overlap(rects[k], {x, y, x, y})) expected += static_cast<double>(k % 7);
+    EXPECT_EQ(stack.height_m(x, y), expected);
+    EXPECT_TRUE(holds(stack.bounds_m({x, y, x + 5, y + 1}), expected));
+  }
+}
+
 TEST(ReliefStack, AnEmptyStackIsFlat) {
   const Stack stack({});
   EXPECT_EQ(stack.height_m(3, 4), 0);
