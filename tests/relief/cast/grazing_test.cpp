@@ -5,6 +5,7 @@
 
 #include "relief/cast/caster.h"
 #include "tests/relief/cast/brute_force.h"
+#include "tests/relief/cast/rays.h"
 #include "tests/relief/samples.h"
 
 namespace relief {
@@ -65,6 +66,41 @@ void expect_none_missed(Interpolation interpolation, int side, int rays, unsigne
 
 TEST(ReliefGrazing, NoHitOfABilinearMapIsMissed) { expect_none_missed(Interpolation::kBilinear, 24, 5000, 41); }
 TEST(ReliefGrazing, NoHitOfABicubicMapIsMissed) { expect_none_missed(Interpolation::kBicubic, 24, 5000, 42); }
+
+// Curved bases, whose rays meet no polynomials: against samples 0.01 m apart, whose dips are longer than that.
+TEST(ReliefGrazing, OnCurvedBasesNoSampleLiesBehindTheGround) {
+  Quadratic f;
+  f.matrix[0][0] = f.matrix[1][1] = -1.0 / 80;
+  f.linear = {0, 0, 0.5};
+  const Chart central = Chart::central({0, 0, -30}, {1, 0, 0}, {0, 1, 0}, 30, {-9, -8, 9, 8});
+  const Chart parallel = Chart::parallel({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-9, -8, 9, 8});
+  for (const Interpolation interpolation : {Interpolation::kBilinear, Interpolation::kBicubic}) {
+    const auto map = samples::rough_map(24, 22, 0.6, interpolation, 46);
+    samples::Random random(47);
+    for (const Surface& surface :
+         {Surface(Base::sphere({0, 0, -30}, 30), {{central, map}}),
+          Surface(Base::sphere({0, 0, -30}, 30), {{parallel.cut({{0, 0, 1}, 30}), map}}),
+          Surface(Base::ellipsoid({0, 0, -30}, {40, 25, 30}), {{central, map}}),
+          Surface(Base::quadric(f, {0, 0, 0}), {{parallel, map}}),
+          Surface(Base::quadric(f, {0, 0, 0}), {{central, map}})}) {
+      int hits = 0;
+      for (int n = 0; n < 200; ++n) {
+        // A point of the ground under (x, y), and a tangent there.
+        glm::dvec3 p{random.in(-6.0, 6.0), random.in(-6.0, 6.0), 20};
+        p.z -= cast_ray(surface, p, {0, 0, -1});
+        const glm::dvec3 normal = surface.normal(p);
+        const glm::dvec3 d = glm::normalize(glm::cross(normal, random.direction()));
+        const double above = (n % 2 == 0 ? -1 : 1) * std::pow(10.0, random.in(-3.0, 0.0));
+        const glm::dvec3 from = p + above * normal - d * random.in(0.0, 8.0);
+        if (!(std::abs(surface.offset_m(from)) > 1e-6)) continue;
+        const double hit = cast_ray(surface, from, d, 0, 20);
+        hits += hit < kNoHit ? 1 : 0;
+        rays::expect_first(surface, from, d, hit, 20, 1e-8);
+      }
+      EXPECT_GT(hits, 50);
+    }
+  }
+}
 
 TEST(LongReliefGrazing, NoHitOfABilinearMapIsMissed) {
   expect_none_missed(Interpolation::kBilinear, 64, 100000, 43);
