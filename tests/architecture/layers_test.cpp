@@ -58,6 +58,8 @@ const std::vector<Layer>& layers() {
       {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
       {"relief", "relief", {"vpe/base", "mars", "vpe/core"}},
       {"relief/files", "relief", {"vpe/base", "mars", "vpe/core", "relief"}},
+      {"relief/field", "relief", {"vpe/base", "mars", "vpe/core", "relief"}},
+      {"relief/cast", "relief", {"vpe/base", "mars", "vpe/core", "relief", "relief/field"}},
       {"objects/model", "objects", {"vpe/base", "mars", "vpe/core", "cull", "lod"}},
       {"objects/volumes", "objects", {"vpe/base", "mars", "vpe/core", "objects/model"}},
       {"objects/files",
