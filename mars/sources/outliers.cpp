@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "mars/sources/stack_walk.h"
+
 namespace mars {
 namespace {
 
@@ -23,7 +25,7 @@ class Comparison {
               std::vector<double>& excess_m, std::vector<double>& base_m) const {
     const std::size_t n = directions.size();
     base_m.resize(n);
-    base_.sample(directions, 0, base_m);
+    base_.sample(directions, spacing_m_, base_m);
     excess_m.assign(n, std::numeric_limits<double>::quiet_NaN());
     // The surroundings are sampled only for posts that exceed the floor.
     std::vector<std::size_t> open;
@@ -36,7 +38,7 @@ class Comparison {
     around.reserve(open.size() * kAround);
     for (const std::size_t i : open) add_ring(directions[i], around);
     std::vector<double> ring_m(around.size());
-    base_.sample(around, 0, ring_m);
+    base_.sample(around, spacing_m_, ring_m);
     for (std::size_t k = 0; k < open.size(); ++k) {
       double low = base_m[open[k]];
       double high = low;
@@ -71,6 +73,7 @@ class Comparison {
   }
 
   const ElevationSource& base_;
+  double spacing_m_ = resolution_m(base_);  // of its data: detail that is made up contradicts nothing
   double radius_m_;
   OutlierOptions options_;
 };

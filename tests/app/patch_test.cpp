@@ -140,7 +140,8 @@ TEST_F(PatchCommand, ReliefsDigAndBuild) {
   write_inset("below.tif", -62, 32, kOff_m);
   expect_full({"below.tif"});
   EXPECT_NEAR(elevation_m("patched.vpe", "-60,30"), middle_m + kOff_m, kFacets_m);
-  write_text(dir_ / "bad.relief.toml", "version = 1\n[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = -5\n");
+  write_text(dir_ / "bad.relief.toml",
+             "version = 1\n[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = -5\n");
   expect_failure({"patch", "p.vpe", "bad.relief.toml", "-o", "q.vpe"}, 1, {"bad.relief.toml", "radius"});
   expect_failure({"build", "works.relief.toml", "-o", "q.vpe"}, 2, {"works.relief.toml", "name one too"});
 }
