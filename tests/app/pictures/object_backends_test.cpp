@@ -161,6 +161,25 @@ class LongObjectBackends : public ObjectBackends {};
 
 TEST_F(LongObjectBackends, ShowTheSameIn200Views) { compare(200); }
 
+TEST_F(ObjectBackends, ALimitOfTrianglesMakesObjectsAsCoarseAsTheGround) {
+  Random random(kSeed + 2);
+  int coarser = 0;
+  for (int n = 0; n < 6; ++n) {
+    core::DrawRequest request = any_request(random);
+    const core::DrawResult all = triangles_->draw(request);
+    request.settings.lod_triangles = 500;
+    const core::DrawResult few = triangles_->draw(request);
+    ASSERT_TRUE(all.certificate.objects && few.certificate.objects);
+    const double limit_px = std::max(few.certificate.screen_space_error_px, request.settings.lod_tolerance_px);
+    EXPECT_LE(few.certificate.objects->screen_space_error_px, limit_px);
+    EXPECT_GE(few.certificate.shift_bound_px, few.certificate.objects->screen_space_error_px);
+    EXPECT_LE(all.certificate.objects->screen_space_error_px, request.settings.lod_tolerance_px);
+    if (few.certificate.objects->screen_space_error_px > all.certificate.objects->screen_space_error_px)
+      ++coarser;
+  }
+  EXPECT_GT(coarser, 2);
+}
+
 TEST_F(ObjectBackends, SinglePixelsAreThoseOfTheImage) {
   Random random(kSeed + 1);
   const core::DrawRequest request = any_request(random);

@@ -85,6 +85,15 @@ core::DrawRequest ground_request(const core::DrawRequest& request,
   return ground;
 }
 
+// Returns the request with objects as coarse as the ground, where a limit of triangles made that coarser than the
+// tolerance.
+core::DrawRequest within_triangle_limit(core::DrawRequest request, const core::Certificate& ground) {
+  const double tolerance_px = request.settings.lod_tolerance_px;
+  if (request.settings.lod_triangles > 0 && tolerance_px > 0)
+    request.coarsening = std::max(request.coarsening, ground.screen_space_error_px / tolerance_px);
+  return request;
+}
+
 template <class Base>
 class ObjectRenderer : public Base, public paging::PlanetUser {
  public:
@@ -100,8 +109,10 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
       below.paging.next =
           std::make_shared<const core::DrawRequest>(ground_request(*request.paging.next, placed.interest));
     core::DrawResult result = ground_->draw(below);
-    if (!result.certificate.is_below_ground && !result.frame.range_m.empty())
-      pass().draw(placed, request, is_exact(request), {}, result.frame, result.certificate);
+    if (!result.certificate.is_below_ground && !result.frame.range_m.empty()) {
+      pass().draw(placed, within_triangle_limit(request, result.certificate), is_exact(request), {},
+                  result.frame, result.certificate);
+    }
     core::apply_gamma(result.frame.colour, request.settings.gamma);
     if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
     result.stats.bytes_resident += static_cast<std::int64_t>(pass().bytes());
