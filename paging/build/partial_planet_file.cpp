@@ -137,8 +137,13 @@ PartialPlanetFile continue_partial_file(const std::string& path, const std::stri
 
 // Makes the partial file a copy of a finished planet file, without what the patch drops.
 std::unique_ptr<Database> copy_finished(const std::string& path, const PatchStart& patch) {
-  fs::copy_file(patch.path, path);
-  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write, fs::perm_options::add);
+  std::error_code error;
+  if (fs::copy_file(patch.path, path, error); !error)
+    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write, fs::perm_options::add, error);
+  if (error) {
+    throw DatabaseError(path + ": cannot copy " + patch.path + " there: " + error.message() +
+                        "; it needs as much space as that file: free some, or give another folder");
+  }
   auto db = open_exclusively(path);
   db->execute(kPartialTables);
   if (!is_intact(*db)) {

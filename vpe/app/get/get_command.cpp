@@ -194,6 +194,7 @@ void add_get(CLI::App& program, Common& common) {
                     "Tell all that the catalogue says of the products, fetch nothing");
   command->add_option("--tile", arguments->tiles, "Fetch only this tile of products with tiles (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--catalogue", arguments->catalogue,
                       "TOML file to use in place of the program's catalogue");

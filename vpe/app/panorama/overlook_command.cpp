@@ -221,11 +221,13 @@ void add_overlook(CLI::App& program, Common& common) {
       ->add_option("--direction,--at", arguments->direction,
                    "AZIMUTH,ELEVATION: print what is there (degrees; repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       ->add_option("--at-pixel", arguments->at_pixel,
                    "X,Y: print what is at a pixel of the image (centres at .5; repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--right", arguments->right, "The right eye's panorama; PANO is the left eye's");
   command

@@ -37,6 +37,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--set", options.set, "KEY=VALUE: change a setting ('vpe settings' lists them; repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const std::string polygon(core::to_string(core::Backend::kPolygon));
   const std::string ray(core::to_string(core::Backend::kRay));
@@ -68,6 +69,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
           "LON,LAT,RADIUS,LEVELS: draw a circle (degrees, metres) with LEVELS more levels of detail, or "
           "fewer where LEVELS is negative (repeatable; overlapping circles add up)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 

@@ -57,11 +57,13 @@ void add_build_request(CLI::App& command, BuildRequest& request) {
       "reliefs by formulas (*.relief.toml) change the ground of all rasters, in their order");
   command.add_option("--image", request.images, "Image rasters, or 'embedded'")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--region", request.regions,
                   "WEST,SOUTH,EAST,NORTH: build full resolution only in this box, degrees (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--spacing", request.finest_spacing_m,

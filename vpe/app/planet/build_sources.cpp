@@ -85,11 +85,9 @@ void name_alignments(const SourceArguments& arguments, const std::vector<Source>
       combine.alignment = alignment->second;
       continue;
     }
-    const auto source = std::ranges::find_if(
-        sources, [&](const Source& s) { return is_named(s->infos().front().name, option.name); });
-    if (source == sources.end())
-      throw UsageError("--align " + text + ": no raster is called '" + option.name + "'");
-    combine.alignments[(*source)->infos().front().name] = alignment->second;
+    const std::vector<std::size_t> found = named_sources(sources, option.name);
+    if (found.empty()) throw UsageError("--align " + text + ": no raster is called '" + option.name + "'");
+    combine.alignments[sources[found.front()]->infos().front().name] = alignment->second;
   }
 }
 
@@ -111,10 +109,11 @@ void name_datums(const SourceArguments& arguments, std::vector<Source>& sources)
   for (const std::string& text : arguments.datums) {
     const NamedValue option = named_value(text);
     if (option.value == kSameDatum) continue;
+    const std::vector<std::size_t> means = named_sources(sources, option.name);
     bool found = false;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const mars::SourceInfo info = sources[i]->infos().front();
-      if (option.name.empty() ? info.datum.is_known() || named[i] : !is_named(info.name, option.name)) continue;
+      if (option.name.empty() ? info.datum.is_known() || named[i] : !std::ranges::count(means, i)) continue;
       found = true;
       named[i] = true;
       const double sphere_m = info.body_radius_m > 0 ? info.body_radius_m : mars::kMarsRadius_m;
@@ -143,9 +142,11 @@ std::set<std::string> name_same_datums(const SourceArguments& arguments, std::ve
     const NamedValue option = named_value(text);
     if (option.value != kSameDatum) continue;
     bool found = false;
-    for (Source& source : sources) {
+    const std::vector<std::size_t> means = named_sources(sources, option.name);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      Source& source = sources[i];
       const mars::SourceInfo info = source->infos().front();
-      if (option.name.empty() ? info.datum.is_known() : !is_named(info.name, option.name)) continue;
+      if (option.name.empty() ? info.datum.is_known() : !std::ranges::count(means, i)) continue;
       found = true;
       if (datum.is_known()) {
         source = with_datum(source, datum);
@@ -190,6 +191,7 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
           "areoid, radius, sphere, sphere:RADIUS_M, ellipsoid:EQUATORIAL_M,POLAR_M, or same: that of the other "
           "rasters, whatever they differ by (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag(
       "--to-datum{base}", a.to_datum,
@@ -209,6 +211,7 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
           "[NAME=]WAY: plane: remove offset and tilt of each inset, or of the raster NAME alone, fitted along its "
           "boundary; edges: warp the base to meet it, so that it keeps its heights; none (default) (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option(
@@ -216,6 +219,7 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
           "NAME=RASTER: leave out posts of the raster NAME where RASTER, a mask of any grid, is below 0.5 or "
           "has no data (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--feather", a.feather_m,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "mars/sources/stack_walk.h"
 
@@ -9,7 +10,7 @@ namespace vpe::app {
 
 namespace {
 
-// Returns the treatment without those of edges that were matched to added sources: they have a cap of their own.
+// Returns the treatment without one of its texts.
 std::string without(std::string treatment, const std::string& removed) {
   const std::size_t at = treatment.find(removed);
   if (at == std::string::npos) return treatment;
@@ -24,10 +25,50 @@ std::string without(std::string treatment, const std::string& removed) {
   return treatment.erase(begin, end - begin);
 }
 
-std::string treatment_of(const RequestedSources& sources, const std::string& name) {
+// Returns the treatment of a source without edges that were matched to others.
+std::string own_treatment(const RequestedSources& sources, const std::string& name) {
+  std::string treatment;
   for (const mars::SourceInfo& info : sources.combined.source->infos())
-    if (info.name == name) return info.treatment;
-  return "";
+    if (info.name == name) treatment = info.treatment;
+  for (const mars::CombineFinding& finding : sources.combined.findings)
+    if (finding.edge_matching) treatment = without(treatment, to_string(*finding.edge_matching, finding.name));
+  return treatment;
+}
+
+const mars::CombineFinding* finding_of(const RequestedSources& sources, const std::string& name) {
+  const auto found = std::ranges::find(sources.combined.findings, name, &mars::CombineFinding::name);
+  return found != sources.combined.findings.end() ? &*found : nullptr;
+}
+
+std::optional<mars::EdgeMatching> edges_of(const RequestedSources& sources, const std::string& name) {
+  const mars::CombineFinding* finding = finding_of(sources, name);
+  return finding != nullptr ? finding->edge_matching : std::nullopt;
+}
+
+bool is_equal(const mars::EdgeMatching& a, const mars::EdgeMatching& b) {
+  return a.boundary == b.boundary && a.off_m == b.off_m && a.cell_m == b.cell_m && a.reach_m == b.reach_m &&
+         a.radius_m == b.radius_m;
+}
+
+// Returns whether the same plane is removed from a source. Its text does not have all digits.
+bool is_equally_levelled(const RequestedSources& before, const RequestedSources& now, const std::string& name) {
+  const auto plane = [&](const RequestedSources& sources) {
+    const mars::CombineFinding* finding = finding_of(sources, name);
+    return finding != nullptr ? finding->alignment : std::nullopt;
+  };
+  const auto a = plane(before);
+  const auto b = plane(now);
+  return a.has_value() == b.has_value() &&
+         (!a || (a->offset_m == b->offset_m && a->tilt_east == b->tilt_east && a->tilt_north == b->tilt_north &&
+                 a->centre.lon_deg == b->centre.lon_deg && a->centre.lat_deg == b->centre.lat_deg));
+}
+
+// Returns the number of the source that lies below all others.
+std::size_t coarsest(const std::vector<std::shared_ptr<const mars::ElevationSource>>& sources) {
+  std::size_t found = 0;
+  for (std::size_t n = 1; n < sources.size(); ++n)
+    if (mars::resolution_m(*sources[n]) >= mars::resolution_m(*sources[found])) found = n;
+  return found;
 }
 
 // Marks the sources next finer than an added one: the width of their fade follows what lies below them.
@@ -63,21 +104,24 @@ paging::ChangedIn elevation_changes(const RequestedSources& before, const Reques
   for (std::size_t n = known; n < changed.size(); ++n) changed[n] = true;
   mark_faded(now.dems, known, changed);
 
+  // What lies below an inset is warped to meet it, and then one source: insets in it fade in another way.
   std::vector<mars::Cap> warped;
-  std::vector<std::string> warps;
-  for (std::size_t n = known; n < now.dems.size(); ++n) {
+  bool is_folded = false;
+  for (std::size_t n = 0; n < now.dems.size(); ++n) {
     const std::string name = now.dems[n]->infos().front().name;
-    for (const mars::CombineFinding& finding : now.combined.findings) {
-      if (finding.name != name || !finding.edge_matching) continue;
-      warped.push_back(finding.edge_matching->cap);
-      warps.push_back(to_string(*finding.edge_matching, name));
-    }
+    const auto is = edges_of(now, name);
+    const auto was = n < known ? edges_of(before, name) : std::nullopt;
+    if (is.has_value() == was.has_value() && (!is || is_equal(*is, *was))) continue;
+    for (const auto& edges : {is, was})
+      if (edges) warped.push_back(edges->cap);
+    is_folded = true;
   }
+  const std::size_t lowest = coarsest(before.dems);
   for (std::size_t n = 0; n < known; ++n) {
     const std::string name = now.dems[n]->infos().front().name;
-    std::string treatment = treatment_of(now, name);
-    for (const std::string& warp : warps) treatment = without(treatment, warp);
-    if (treatment != treatment_of(before, name)) changed[n] = true;
+    if (own_treatment(now, name) != own_treatment(before, name) || !is_equally_levelled(before, now, name) ||
+        (is_folded && n != lowest))
+      changed[n] = true;
     // Posts are outliers by what lies below them.
     if (!rejects_outliers) continue;
     for (std::size_t added = known; added < now.dems.size(); ++added)

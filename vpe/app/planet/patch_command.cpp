@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "vpe/app/planet/commands.h"
 #include "vpe/app/planet/patch_changes.h"
 #include "vpe/app/planet/planet_build.h"
+#include "vpe/app/planet/remote_wait.h"
 #include "vpe/app/planet/source_mask.h"
 #include "vpe/base/number.h"
 
@@ -36,6 +38,11 @@ struct PatchArguments {
   paging::BuildOptions options;
 };
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code none;
+  return fs::equivalent(a, b, none);
+}
+
 // Replaces a source's path in the request, also where options name it.
 void rename_source(BuildRequest& request, const std::string& from, const std::string& to) {
   for (auto* files : {&request.dems, &request.images})
@@ -54,18 +61,16 @@ void rename_source(BuildRequest& request, const std::string& from, const std::st
 
 // Finds the files of a request that are not where they were when the planet was built.
 void find_sources(BuildRequest& request, const PatchArguments& arguments) {
-  std::vector<fs::path> folders{fs::path(arguments.planet).parent_path()};
-  if (!arguments.folder.empty()) folders.insert(folders.begin(), arguments.folder);
   for (const std::string& file : files_of(request)) {
     std::error_code none;
     // What is neither a file nor one in these folders may be a name of GDAL's.
-    if (fs::exists(file, none) || mars::is_remote(mars::raster_name(file))) continue;
-    for (const fs::path& folder : folders) {
-      const fs::path here = folder / fs::path(file).filename();
-      if (!fs::exists(here, none)) continue;
-      rename_source(request, file, here.string());
-      break;
-    }
+    if (mars::is_remote(mars::raster_name(file))) continue;
+    std::vector<fs::path> places{fs::path(file),
+                                 fs::path(arguments.planet).parent_path() / fs::path(file).filename()};
+    if (!arguments.folder.empty()) places.insert(places.begin(), arguments.folder / fs::path(file).filename());
+    const auto here =
+        std::ranges::find_if(places, [&](const fs::path& place) { return fs::exists(place, none); });
+    if (here != places.end() && *here != file) rename_source(request, file, here->string());
   }
 }
 
@@ -90,15 +95,70 @@ BuildRequest request_of(const paging::PlanetMeta& meta, const PatchArguments& ar
   return request;
 }
 
+// Throws unless all rasters and reliefs of the patch are new.
+void require_new(const BuildRequest& request, const PatchArguments& arguments) {
+  const auto check = [&](const std::vector<std::string>& known, const std::vector<std::string>& added) {
+    for (auto file = added.begin(); file != added.end(); ++file) {
+      const auto is_same = [&](const std::string& other) {
+        return other == *file || is_same_file(other, *file);
+      };
+      if (std::ranges::any_of(known, is_same) || std::any_of(added.begin(), file, is_same)) {
+        throw std::runtime_error(*file + ": is a source of " + arguments.planet +
+                                 " already; to change how it is treated, build the planet again");
+      }
+    }
+  };
+  check(request.dems, arguments.dems);
+  check(request.images, arguments.images);
+}
+
+// Throws where rasters that are no sources of their own, such as masks and the areoid, are not those of the build.
+void require_equal_treatments(const paging::PlanetMeta& meta, const RequestedSources& sources,
+                              const std::string& planet) {
+  const auto treatments = [](const std::vector<mars::SourceInfo>& infos) {
+    std::vector<std::string> texts;
+    for (const mars::SourceInfo& info : infos) {
+      texts.push_back(info.treatment);
+      // Sources may have moved.
+      for (const mars::SourceInfo& named : infos) {
+        const std::string file = fs::path(named.name).filename().string();
+        for (std::size_t at = 0; file != named.name && !named.name.empty() &&
+                                 (at = texts.back().find(named.name, at)) != std::string::npos;
+             at += file.size())
+          texts.back().replace(at, named.name.size(), file);
+      }
+    }
+    return texts;
+  };
+  const std::vector<std::string> was = treatments(meta.sources);
+  const std::vector<std::string> is = treatments(sources.combined.source->infos());
+  for (std::size_t n = 0; n < std::min(was.size(), is.size()); ++n) {
+    if (was[n] == is[n]) continue;
+    throw paging::PlanetError(planet + ": cannot be patched: " + meta.sources[n].name + " was treated as '" +
+                              was[n] + "', and is now '" + is[n] +
+                              "': a mask, the areoid or a raster below it has changed; build the planet again");
+  }
+}
+
 // Adds the sources of the patch to those of the planet.
 BuildRequest patched_request(BuildRequest request, const PatchArguments& arguments,
                              const paging::PlanetMeta& meta) {
+  require_new(request, arguments);
+  const bool has_options = !arguments.mask.empty() || !arguments.alignment.empty() || !arguments.datum.empty();
+  if (has_options && std::ranges::all_of(arguments.dems, relief::is_relief_path))
+    throw UsageError("--mask, --align and --datum are of elevation rasters, and none is given");
+  if (!arguments.regions.empty() && request.regions.empty()) {
+    throw UsageError("--region: " + arguments.planet +
+                     " was built without it, so all of it has full resolution; leave it out");
+  }
   for (const std::string& dem : arguments.dems) {
     request.dems.push_back(dem);
-    if (relief::is_relief_path(dem)) continue;
-    if (!arguments.mask.empty()) request.sources.masks.push_back(dem + "=" + arguments.mask);
-    if (!arguments.alignment.empty()) request.sources.alignments.push_back(dem + "=" + arguments.alignment);
-    if (!arguments.datum.empty()) request.sources.datums.push_back(dem + "=" + arguments.datum);
+    if (relief::is_relief_path(dem) || !has_options) continue;
+    // Products of several files are known by the name of their label.
+    const std::string name = mars::open_elevation(dem)->infos().front().name;
+    if (!arguments.mask.empty()) request.sources.masks.push_back(name + "=" + arguments.mask);
+    if (!arguments.alignment.empty()) request.sources.alignments.push_back(name + "=" + arguments.alignment);
+    if (!arguments.datum.empty()) request.sources.datums.push_back(name + "=" + arguments.datum);
   }
   request.images.insert(request.images.end(), arguments.images.begin(), arguments.images.end());
   request.regions.insert(request.regions.end(), arguments.regions.begin(), arguments.regions.end());
@@ -131,9 +191,15 @@ void note_limits(const BuildRequest& request, const RequestedSources& sources, s
   }
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code none;
-  return fs::equivalent(a, b, none);
+// Opens the sources that the planet was built from.
+RequestedSources open_planet_sources(const BuildRequest& request, paging::BuildOptions& options,
+                                     const PatchArguments& arguments) {
+  try {
+    return open_sources(request, options);
+  } catch (const mars::SourceError& e) {
+    throw mars::SourceError(std::string(e.what()) + " (a source of " + arguments.planet +
+                            ": --sources FOLDER says where these are)");
+  }
 }
 
 void patch(PatchArguments& arguments, const Common& common) {
@@ -150,7 +216,8 @@ void patch(PatchArguments& arguments, const Common& common) {
   limit_rasters(common);
 
   paging::BuildOptions options_before = options;
-  const RequestedSources sources_before = open_sources(before, options_before);
+  const RequestedSources sources_before = open_planet_sources(before, options_before, arguments);
+  require_equal_treatments(meta, sources_before, arguments.planet);
   const RequestedSources sources = open_sources(request, options);
   if (!common.quiet) {
     print_findings(sources.combined);
@@ -162,8 +229,13 @@ void patch(PatchArguments& arguments, const Common& common) {
   paging::BuildPlan plan = paging::plan_tiles(options, *sources.combined.source);
   std::error_code none;
   if (!arguments.force && fs::exists(options.output, none) && !is_same_file(options.output, arguments.planet)) {
-    require_same_content(options.output,
-                         paging::planned_content(options, plan, *sources.combined.source, sources.image.get()));
+    paging::PlannedContent planned =
+        paging::planned_content(options, plan, *sources.combined.source, sources.image.get());
+    // The patch keeps the planet's where no place shows it.
+    const bool has_nodata =
+        std::ranges::any_of(meta.levels, [](const auto& level) { return level.nodata_posts > 0; });
+    if (!has_nodata) planned.meta.fill_m = meta.fill_m;
+    require_same_content(options.output, planned);
   }
   const paging::BuildSummary summary =
       run_build(options, *sources.combined.source, sources.image.get(), common, std::move(plan), &patched);
@@ -187,6 +259,7 @@ void add_patch(CLI::App& program, Common& common) {
       "(*.relief.toml) dig and build");
   command->add_option("--image", arguments->images, "Image rasters to add")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("-o,--output", arguments->options.output, "Planet file to write; may be PLANET")
       ->required();
@@ -204,6 +277,7 @@ void add_patch(CLI::App& program, Common& common) {
           "--region", arguments->regions,
           "WEST,SOUTH,EAST,NORTH: full resolution in this box too, where the planet was built with --region")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option(
       "--sources", arguments->folder,

@@ -57,20 +57,32 @@ NamedValue named_value(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-bool is_named(const std::string& path, const std::string& name) {
-  return path == name || std::filesystem::path(path).filename().string() == name;
+std::vector<std::size_t> named_sources(const std::vector<std::shared_ptr<const mars::ElevationSource>>& sources,
+                                       const std::string& name) {
+  std::vector<std::size_t> by_path;
+  std::vector<std::size_t> by_file;
+  for (std::size_t n = 0; n < sources.size(); ++n) {
+    const std::string path = sources[n]->infos().front().name;
+    if (path == name) by_path.push_back(n);
+    if (std::filesystem::path(path).filename().string() == name) by_file.push_back(n);
+  }
+  return by_path.empty() ? by_file : by_path;
 }
 
 void apply_masks(const std::vector<std::string>& masks,
                  std::vector<std::shared_ptr<const mars::ElevationSource>>& sources) {
   for (const std::string& text : masks) {
-    const NamedValue mask = named_value(text);
-    if (mask.name.empty()) throw UsageError("--mask " + text + ": expected NAME=RASTER");
-    const auto source = std::ranges::find_if(
-        sources, [&](const auto& s) { return is_named(s->infos().front().name, mask.name); });
-    if (source == sources.end())
-      throw UsageError("--mask " + text + ": no raster is called '" + mask.name + "'");
-    *source = masked(*source, mask.value);
+    if (text.find('=') == std::string::npos) throw UsageError("--mask " + text + ": expected NAME=RASTER");
+    // Both names may have equals signs.
+    std::vector<std::size_t> found;
+    std::size_t equals = 0;
+    while (found.empty() && (equals = text.find('=', equals)) != std::string::npos)
+      found = named_sources(sources, text.substr(0, equals++));
+    if (found.empty()) {
+      throw UsageError("--mask " + text + ": no raster is called '" + text.substr(0, text.find('=')) + "'");
+    }
+    std::shared_ptr<const mars::ElevationSource>& source = sources[found.front()];
+    source = masked(source, text.substr(equals));
   }
 }
 

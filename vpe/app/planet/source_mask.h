@@ -16,8 +16,10 @@ struct NamedValue {
 };
 NamedValue named_value(const std::string& text);
 
-// Returns whether the name on the command line is that of a source: its path or its file's name.
-bool is_named(const std::string& path, const std::string& name);
+// Returns the numbers of the sources that a name on the command line means: those with this path, else those whose file
+// has this name.
+std::vector<std::size_t> named_sources(const std::vector<std::shared_ptr<const mars::ElevationSource>>& sources,
+                                       const std::string& name);
 
 // Leaves out posts of elevation sources where a mask, a raster of its own grid, is below one half or has no data. Each
 // text is NAME=RASTER; the content of the raster becomes part of the source's treatment. Throws UsageError for a name

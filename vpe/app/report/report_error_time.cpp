@@ -222,6 +222,7 @@ void add_report_error_time(CLI::App& report, Common& common) {
           "--view", arguments->views,
           "Only this view (repeatable): orbit, high oblique, canyon floor, rim, crater, plain, grazing, polar")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--size", arguments->size,
                       "WIDTHxHEIGHT, pixels (default: 640x360; with --short 320x180)");

@@ -128,6 +128,7 @@ void add_sculpt(CLI::App& program, Common& common) {
           "File with the outline of the object in a photograph, a line x,y in pixels for each corner, in place "
           "of the background; one for each photograph, in their order (repeatable)")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--voxels", arguments->voxels, "Voxels along the longest side")
       ->check(CLI::Range(1, 1024))
