@@ -236,24 +236,49 @@ TEST_F(PatchCommand, OptionsAreOfTheAddedRaster) {
                  {"was built without it"});
 }
 
-// What is warped to meet a strip becomes one source, so insets far away fade in another way.
+// What is warped to meet a strip becomes one source, so an inset at the border of the lowest raster fades in another way.
 TEST_F(PatchCommand, WarpedEdgesChangeFadesElsewhere) {
-  Dem below;
-  below.width = 120;
-  below.height = 80;
-  below.west_deg = -20;
-  below.north_deg = 30;
-  below.cell_deg = 0.5;
-  below.height_m = [](int column, int row) {
-    const double lon = -20 + (column + 0.5) / 2;
-    const double lat = 30 - (row + 0.5) / 2;
-    return lon > -8 && lon < -6 && lat > 0 && lat < 10 ? -32768.0 : 300 + ground_m(lon, lat);
+  const auto write_hills = [&](const std::string& name, double west_deg, double north_deg, double cell_deg,
+                               int posts, double off_m) {
+    Dem dem;
+    dem.width = dem.height = posts;
+    dem.west_deg = west_deg;
+    dem.north_deg = north_deg;
+    dem.cell_deg = cell_deg;
+    dem.height_m = [=](int column, int row) {
+      return off_m + ground_m(west_deg + (column + 0.5) * cell_deg, north_deg - (row + 0.5) * cell_deg);
+    };
+    write_dem(dir_ / name, dem);
   };
-  below.no_data = -32768;
-  write_dem(dir_ / "below.tif", below);
-  write_inset("inset.tif", -12, 10, -300);
-  build({"below.tif", "inset.tif"});
-  expect_full({"strip.tif", "--align", "edges"});
+  write_hills("lowest.tif", 0, 20, 0.5, 80, 0);
+  write_hills("wide.tif", 20, 15, 0.25, 60, 50);
+  write_hills("fine.tif", 22, -6, 0.06, 40, 80);
+  write_hills("border.tif", 1.6, 10, 0.02, 100, 300);
+  write_hills("far.tif", 25, -10, 0.12, 40, 120);
+  json_of({"build", "lowest.tif", "wide.tif", "fine.tif", "border.tif", "-o", "p.vpe", "--base-spacing",
+           "60000", "--datum", "areoid"});
+  expect_full({"far.tif", "--align", "edges"});
+}
+
+// A raster between a base and an inset that is matched to it makes the base finer, so that the warp is another one, although
+// its treatment reads the same.
+TEST_F(PatchCommand, AFinerBaseWarpsInAnotherWay) {
+  const auto write_level = [&](const std::string& name, double west_deg, double north_deg, double cell_deg,
+                               int posts, double height_m) {
+    Dem dem;
+    dem.width = dem.height = posts;
+    dem.west_deg = west_deg;
+    dem.north_deg = north_deg;
+    dem.cell_deg = cell_deg;
+    dem.height_m = [height_m](int, int) { return height_m; };
+    write_dem(dir_ / name, dem);
+  };
+  write_level("base.tif", 0, 20, 0.1, 200, 0);
+  write_level("inset.tif", 5, 10, 0.02, 100, 1000);
+  write_level("between.tif", 15, 15, 0.05, 40, 0);
+  json_of({"build", "base.tif", "inset.tif", "-o", "p.vpe", "--base-spacing", "60000", "--datum", "areoid",
+           "--align", "inset.tif=edges"});
+  expect_full({"between.tif"});
 }
 
 TEST_F(PatchCommand, SaysWhatItKeepsAndRounds) {
