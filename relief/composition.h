@@ -1,4 +1,4 @@
-// How a shape and a weight change ground that is there already.
+// Composition: how a shape and a weight change ground that is there already.
 //
 // The target T is the shape's height above its zero level, the weight w is 0 to 1, h is the ground before:
 //   add      h + w T                  (T counts from the ground)

@@ -27,7 +27,7 @@ struct ReliefShapes {
   double part_m = 0;                    // size of the smallest part
 };
 
-// What a relief did to ground at one place.
+// Holds what a relief did to ground at one place.
 struct ReliefChange {
   double height_m = 0;
   bool is_changed = false;  // the height is another

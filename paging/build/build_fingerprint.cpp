@@ -22,19 +22,6 @@ constexpr std::string_view kPlaceMark = "place of ";  // begins lines that porta
 constexpr std::size_t kMostDifferences = 4;
 constexpr std::size_t kMostLetters = 80;  // of a value, for people
 
-// Treatments name files with their folders; copies lie in others.
-std::string without_folders(std::string text, const PlanetMeta& meta) {
-  for (const auto* sources : {&meta.sources, &meta.image_sources}) {
-    for (const mars::SourceInfo& source : *sources) {
-      const std::string name = std::filesystem::path(source.name).filename().string();
-      if (name.empty() || name == source.name) continue;
-      for (std::size_t at = 0; (at = text.find(source.name, at)) != std::string::npos; at += name.size())
-        text.replace(at, source.name.size(), name);
-    }
-  }
-  return text;
-}
-
 // Appends a line for each thing that is known of each source.
 void append_sources(std::string& text, const std::string& what, const std::string& json_text,
                     const PlanetMeta& meta) {
@@ -90,6 +77,18 @@ std::string shortened(const std::string& value) {
 }
 
 }  // namespace
+
+std::string without_folders(std::string treatment, const PlanetMeta& meta) {
+  for (const auto* sources : {&meta.sources, &meta.image_sources}) {
+    for (const mars::SourceInfo& source : *sources) {
+      const std::string name = std::filesystem::path(source.name).filename().string();
+      if (name.empty() || name == source.name) continue;
+      for (std::size_t at = 0; (at = treatment.find(source.name, at)) != std::string::npos; at += name.size())
+        treatment.replace(at, source.name.size(), name);
+    }
+  }
+  return treatment;
+}
 
 std::string build_settings(const BuildOptions& options) {
   std::string text = "program = vpe " VPE_VERSION " builder " + std::to_string(kBuilderRevision) + "\n";

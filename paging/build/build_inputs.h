@@ -30,6 +30,9 @@ std::string patch_line(const std::string& identity);
 // one.
 std::string fingerprint_line(const vpe::base::Shard& shard);
 
+// Returns a treatment in which sources are named without their folders. `meta` names the sources.
+std::string without_folders(std::string treatment, const PlanetMeta& meta);
+
 // Returns a fingerprint without the paths and times of sources whose content it has: that of copies is the same.
 std::string portable_fingerprint(const std::string& fingerprint);
 

@@ -132,7 +132,7 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   std::vector<std::int64_t> mask_keys_;    // of tiles with nodata posts, sorted
   std::vector<std::int64_t> nodata_keys_;  // of these and of all above them, sorted
   std::uint64_t version_ = 0;
-  // Of a patched planet: the planet that has the connections, and what lies over it. Else null.
+  // Hold the planet that has the connections, and what lies over it, if the planet is a patched one. Else null.
   std::shared_ptr<const PlanetFile> file_;
   std::shared_ptr<const PlanetOverlay> overlay_;
   mutable vpe::base::ObjectPool<Connection> connections_;  // unused in a patched planet

@@ -1,4 +1,4 @@
-// What can go over to a patched version of its planet.
+// Interface of what can go over to a patched version of its planet.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What a surface is along one ray: the height above its base, the place in a chart, the height over the ground.
+// A surface along one ray: the height above its base, the place in a chart, the height over the ground.
 #pragma once
 
 #include <cmath>

@@ -10,7 +10,7 @@
 
 namespace relief {
 
-// What a layer does with the height h below it and its own height s.
+// States what a layer does with the height h below it and its own height s.
 enum class Compose : std::uint8_t {
   kSum,      // h + s
   kMax,      // the larger one

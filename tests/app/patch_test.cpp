@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "tests/app/support/app_fixture.h"
 
@@ -26,20 +27,27 @@ class PatchCommand : public AppTest {
     write_inset("strip.tif", 20, 12, kOff_m);
   }
 
+  // Writes a square raster of a function of longitude and latitude.
+  void write_square(const std::string& name, double west_deg, double north_deg, double cell_deg, int posts,
+                    const std::function<double(double, double)>& height_m, double radius_m = 3396190) const {
+    Dem dem;
+    dem.width = dem.height = posts;
+    dem.west_deg = west_deg;
+    dem.north_deg = north_deg;
+    dem.cell_deg = cell_deg;
+    dem.radius_m = radius_m;
+    dem.height_m = [=](int column, int row) {
+      return height_m(west_deg + (column + 0.5) * cell_deg, north_deg - (row + 0.5) * cell_deg);
+    };
+    write_dem(dir_ / name, dem);
+  }
+
   // Writes a square raster whose ground lies `off_m` above the globe's.
   void write_inset(const std::string& name, double west_deg, double north_deg, double off_m,
-                   double radius_m = 3396190) const {
-    constexpr double kCell_deg = 0.125;
-    Dem inset;
-    inset.width = inset.height = 64;
-    inset.west_deg = west_deg;
-    inset.north_deg = north_deg;
-    inset.cell_deg = kCell_deg;
-    inset.radius_m = radius_m;
-    inset.height_m = [=](int column, int row) {
-      return off_m + ground_m(west_deg + (column + 0.5) * kCell_deg, north_deg - (row + 0.5) * kCell_deg);
-    };
-    write_dem(dir_ / name, inset);
+                   double radius_m = 3396190, double cell_deg = 0.125, int posts = 64) const {
+    write_square(
+        name, west_deg, north_deg, cell_deg, posts,
+        [off_m](double lon_deg, double lat_deg) { return off_m + ground_m(lon_deg, lat_deg); }, radius_m);
   }
 
   json json_of(Words words) const {
@@ -240,15 +248,7 @@ TEST_F(PatchCommand, OptionsAreOfTheAddedRaster) {
 TEST_F(PatchCommand, WarpedEdgesChangeFadesElsewhere) {
   const auto write_hills = [&](const std::string& name, double west_deg, double north_deg, double cell_deg,
                                int posts, double off_m) {
-    Dem dem;
-    dem.width = dem.height = posts;
-    dem.west_deg = west_deg;
-    dem.north_deg = north_deg;
-    dem.cell_deg = cell_deg;
-    dem.height_m = [=](int column, int row) {
-      return off_m + ground_m(west_deg + (column + 0.5) * cell_deg, north_deg - (row + 0.5) * cell_deg);
-    };
-    write_dem(dir_ / name, dem);
+    write_inset(name, west_deg, north_deg, off_m, 3396190, cell_deg, posts);
   };
   write_hills("lowest.tif", 0, 20, 0.5, 80, 0);
   write_hills("wide.tif", 20, 15, 0.25, 60, 50);
@@ -265,13 +265,7 @@ TEST_F(PatchCommand, WarpedEdgesChangeFadesElsewhere) {
 TEST_F(PatchCommand, AFinerBaseWarpsInAnotherWay) {
   const auto write_level = [&](const std::string& name, double west_deg, double north_deg, double cell_deg,
                                int posts, double height_m) {
-    Dem dem;
-    dem.width = dem.height = posts;
-    dem.west_deg = west_deg;
-    dem.north_deg = north_deg;
-    dem.cell_deg = cell_deg;
-    dem.height_m = [height_m](int, int) { return height_m; };
-    write_dem(dir_ / name, dem);
+    write_square(name, west_deg, north_deg, cell_deg, posts, [height_m](double, double) { return height_m; });
   };
   write_level("base.tif", 0, 20, 0.1, 200, 0);
   write_level("inset.tif", 5, 10, 0.02, 100, 1000);

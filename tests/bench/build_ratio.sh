@@ -28,12 +28,7 @@ warp() {
     -co NUM_THREADS=2 "$dem" "$work/w.tif"
   gdaladdo -q -r average "$work/w.tif" 2 4 8 16
 }
-seconds() { # of a function: wall, processor
-  local took
-  took=$({ time "$1" >"$work/log" 2>&1; } 2>&1)
-  awk '{ print $1, $2 + $3 }' <<<"$took"
-}
-median() { sort -g | awk '{ x[NR] = $1 } END { print (NR % 2) ? x[(NR + 1) / 2] : (x[NR / 2] + x[NR / 2 + 1]) / 2 }'; }
+. "$(dirname "$0")/timing.sh"
 
 for ((n = 1; n <= rounds; ++n)); do
   read -r vpe_wall vpe_cpu < <(seconds build)

@@ -27,12 +27,7 @@ full() {
   "$vpe" build "$base" "$strip" "${image[@]}" "${options[@]}" --height-step "$step" -o "$work/full.vpe" -q
 }
 identity() { "$vpe" info "$1" --json | sed -n 's/.*"identity": *"\([0-9a-f]*\)".*/\1/p'; }
-seconds() { # of a function: wall, processor
-  local took
-  took=$({ time "$1" >"$work/log" 2>&1; } 2>&1)
-  awk '{ print $1, $2 + $3 }' <<<"$took"
-}
-median() { sort -g | awk '{ x[NR] = $1 } END { print (NR % 2) ? x[(NR + 1) / 2] : (x[NR / 2] + x[NR / 2 + 1]) / 2 }'; }
+. "$(dirname "$0")/timing.sh"
 
 for ((n = 1; n <= rounds; ++n)); do
   read -r patch_wall patch_cpu < <(seconds patch)

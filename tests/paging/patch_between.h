@@ -78,7 +78,7 @@ inline bool patches(const paging::TilePatch& patch, const lod::TileKey& key) {
   return std::ranges::any_of(patch.tiles, [&](const auto& tile) { return tile.row.key == lod::pack(key); });
 }
 
-// Where the planets below differ: near a corner of the cube, so across three faces.
+// Cap in which the planets below differ: near a corner of the cube, so across three faces.
 inline const glm::dvec3 kPatched = glm::normalize(glm::dvec3(1.02, 1, 0.98));
 inline constexpr double kPatchedReach_rad = 0.03;
 

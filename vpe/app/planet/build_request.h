@@ -1,4 +1,4 @@
-// What a planet is built from: the sources and options of `vpe build` that its content depends on. A planet file keeps
+// Request of a build: the sources and options of `vpe build` that its content depends on. A planet file keeps
 // them as arguments, so that `vpe patch` can open the same sources.
 #pragma once
 

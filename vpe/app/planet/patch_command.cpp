@@ -115,27 +115,14 @@ void require_new(const BuildRequest& request, const PatchArguments& arguments) {
 // Throws where rasters that are no sources of their own, such as masks and the areoid, are not those of the build.
 void require_equal_treatments(const paging::PlanetMeta& meta, const RequestedSources& sources,
                               const std::string& planet) {
-  const auto treatments = [](const std::vector<mars::SourceInfo>& infos) {
-    std::vector<std::string> texts;
-    for (const mars::SourceInfo& info : infos) {
-      texts.push_back(info.treatment);
-      // Sources may have moved.
-      for (const mars::SourceInfo& named : infos) {
-        const std::string file = fs::path(named.name).filename().string();
-        for (std::size_t at = 0; file != named.name && !named.name.empty() &&
-                                 (at = texts.back().find(named.name, at)) != std::string::npos;
-             at += file.size())
-          texts.back().replace(at, named.name.size(), file);
-      }
-    }
-    return texts;
-  };
-  const std::vector<std::string> was = treatments(meta.sources);
-  const std::vector<std::string> is = treatments(sources.combined.source->infos());
-  for (std::size_t n = 0; n < std::min(was.size(), is.size()); ++n) {
-    if (was[n] == is[n]) continue;
+  paging::PlanetMeta now = meta;
+  now.sources = sources.combined.source->infos();
+  for (std::size_t n = 0; n < std::min(meta.sources.size(), now.sources.size()); ++n) {
+    const std::string was = paging::without_folders(meta.sources[n].treatment, meta);
+    const std::string is = paging::without_folders(now.sources[n].treatment, now);
+    if (was == is) continue;
     throw paging::PlanetError(planet + ": cannot be patched: " + meta.sources[n].name + " was treated as '" +
-                              was[n] + "', and is now '" + is[n] +
+                              was + "', and is now '" + is +
                               "': a mask, the areoid or a raster below it has changed; build the planet again");
   }
 }
