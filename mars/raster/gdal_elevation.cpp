@@ -207,6 +207,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   struct Fetch {
     const GdalElevation* source;
     std::shared_ptr<const Tile> operator()(const TileId& id) const {
+      if (source->is_without_data(id)) return empty_tile();
       return source->tiles_.get(id, [this](const TileId& key) { return source->load(key); });
     }
   };
@@ -273,6 +274,21 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     info_.notes.push_back(info_.name + " has " + std::to_string(bands) + " bands; the first" +
                           (name[0] != '\0' ? " ('" + std::string(name) + "')" : "") +
                           " is taken for elevation (gdal_translate -b N makes a raster of another one)");
+  }
+
+  // Returns true if the file tells without being read that a tile has no data. Mosaics are mostly such tiles.
+  bool is_without_data(const TileId& id) const {
+    if (blocks_) return false;
+    const PixelWindow window = tile_window(grid_, id);
+    const bool wraps = grid_.wraps && window.columns < kTileStride;
+    return !overlaps(raster_->windows(), window) &&
+           !(wraps && overlaps(raster_->windows(), {0, window.row, 1, window.rows}));
+  }
+
+  static std::shared_ptr<const Tile> empty_tile() {
+    static const auto tile = std::make_shared<const Tile>(Tile{
+        std::vector<T>(static_cast<std::size_t>(kTileStride) * kTileStride, std::numeric_limits<T>::quiet_NaN())});
+    return tile;
   }
 
   std::shared_ptr<const Tile> load(const TileId& id) const {

@@ -124,6 +124,13 @@ std::vector<PixelWindow> data_windows(const PixelGrid& grid,
   return found;
 }
 
+bool overlaps(const std::vector<PixelWindow>& windows, const PixelWindow& window) {
+  return std::ranges::any_of(windows, [&](const PixelWindow& w) {
+    return w.column < window.column + window.columns && window.column < w.column + w.columns &&
+           w.row < window.row + window.rows && window.row < w.row + w.rows;
+  });
+}
+
 Footprint::Footprint(const Georeference& georeference, const std::vector<PixelWindow>& windows) {
   const PixelGrid& grid = georeference.grid();
   const glm::dvec2 size = glm::dvec2(grid.width, grid.height) / double{kParts};

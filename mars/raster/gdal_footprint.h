@@ -19,6 +19,9 @@ enum class Coverage { kNone, kSome, kAll };
 std::vector<PixelWindow> data_windows(const PixelGrid& grid,
                                       const std::function<Coverage(const PixelWindow&)>& coverage);
 
+// Returns true if a window shares pixels with any of `windows`.
+bool overlaps(const std::vector<PixelWindow>& windows, const PixelWindow& window);
+
 class Footprint {
  public:
   // Divides the raster into parts and encloses what these have of the windows in a cap each, and in one for each

@@ -9,6 +9,7 @@
 
 #include "mars/raster/gdal_footprint.h"
 #include "mars/raster/gdal_raster.h"
+#include "mars/raster/gdal_tiles.h"
 #include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
@@ -83,11 +84,12 @@ TEST(DataWindows, FullAndEmptyRasters) {
   }
 }
 
-// A GeoTIFF of the whole planet with one block.
-std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata) {
+// A GeoTIFF of the whole planet with one block, or with all.
+std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata, int first_column = 5000,
+                        bool is_sparse = true) {
   GDALAllRegister();
-  const std::string path = (folder / "sparse.tif").string();
-  const char* const options[] = {"TILED=YES", "SPARSE_OK=TRUE", nullptr};
+  const std::string path = (folder / (is_sparse ? "sparse.tif" : "full.tif")).string();
+  const char* const options[] = {"TILED=YES", is_sparse ? "SPARSE_OK=TRUE" : "SPARSE_OK=FALSE", nullptr};
   auto* made = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
       path.c_str(), 7200, 3600, 1, GDT_Float32, const_cast<char**>(options));
   OGRSpatialReference crs;
@@ -97,7 +99,7 @@ std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata) {
   made->SetGeoTransform(to_map.data());
   if (with_nodata) made->GetRasterBand(1)->SetNoDataValue(-9999);
   std::vector<float> values(100, 1234);
-  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, 5000, 1000, 10, 10, values.data(), 10, 10, GDT_Float32,
+  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, first_column, 1000, 10, 10, values.data(), 10, 10, GDT_Float32,
                                              0, 0, nullptr),
             CE_None);
   GDALClose(made);
@@ -123,6 +125,41 @@ TEST(SparseTiff, IsPlannedAndVisitedWhereItHasBlocks) {
 }
 
 // Without a nodata value what it lacks are zeros, which are heights.
+// Blocks at both ends of the rows, which meet, and one in the middle.
+TEST(SparseTiff, HasTheHeightsOfAFullOne) {
+  for (const int first_column : {0, 5000, 7190}) {
+    const test_support::TempDir folder;
+    const auto sparse = mars::open_elevation(sparse_tiff(folder, true, first_column));
+    const auto full = mars::open_elevation(sparse_tiff(folder, true, first_column, false));
+    test_support::Random random(first_column);
+    int with_data = 0;
+    for (int n = 0; n < 4000; ++n) {
+      // Of each other place the pixels are near the data.
+      const double spread = n % 2 == 0 ? 12 : 600;
+      const mars::LonLat place{-180 + (first_column + 5 + random.uniform(-spread, spread)) * 0.05,
+                               90 - (1005 + random.uniform(-spread, spread)) * 0.05};
+      const double height_m = source_files::height_at(*sparse, place);
+      const double expected_m = source_files::height_at(*full, place);
+      if (std::isnan(expected_m)) {
+        EXPECT_TRUE(std::isnan(height_m)) << place.lon_deg << " " << place.lat_deg;
+      } else {
+        EXPECT_EQ(height_m, expected_m) << place.lon_deg << " " << place.lat_deg;
+        ++with_data;
+      }
+    }
+    EXPECT_GT(with_data, 100);
+  }
+}
+
+TEST(SparseTiff, TilesWithoutDataAreNeitherReadNorKept) {
+  const test_support::TempDir folder;
+  const auto source = mars::open_elevation(sparse_tiff(folder, true));
+  source_files::height_at(*source, {-180 + 5005 * 0.05, 90 - 1005 * 0.05});
+  const std::size_t bytes = mars::TileStore::common().bytes();
+  for (int n = 0; n < 50; ++n) EXPECT_TRUE(std::isnan(source_files::height_at(*source, {-170.0 + 3 * n / 2, -40})));
+  EXPECT_EQ(mars::TileStore::common().bytes(), bytes);
+}
+
 TEST(SparseTiff, WithoutANodataValueIsFull) {
   const test_support::TempDir folder;
   const auto source = mars::open_elevation(sparse_tiff(folder, false));
