@@ -286,8 +286,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   }
 
   static std::shared_ptr<const Tile> empty_tile() {
-    static const auto tile = std::make_shared<const Tile>(Tile{
-        std::vector<T>(static_cast<std::size_t>(kTileStride) * kTileStride, std::numeric_limits<T>::quiet_NaN())});
+    static const auto tile = std::make_shared<const Tile>(Tile{std::vector<T>(
+        static_cast<std::size_t>(kTileStride) * kTileStride, std::numeric_limits<T>::quiet_NaN())});
     return tile;
   }
 

@@ -99,8 +99,8 @@ std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata, i
   made->SetGeoTransform(to_map.data());
   if (with_nodata) made->GetRasterBand(1)->SetNoDataValue(-9999);
   std::vector<float> values(100, 1234);
-  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, first_column, 1000, 10, 10, values.data(), 10, 10, GDT_Float32,
-                                             0, 0, nullptr),
+  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, first_column, 1000, 10, 10, values.data(), 10, 10,
+                                             GDT_Float32, 0, 0, nullptr),
             CE_None);
   GDALClose(made);
   return path;
@@ -156,7 +156,8 @@ TEST(SparseTiff, TilesWithoutDataAreNeitherReadNorKept) {
   const auto source = mars::open_elevation(sparse_tiff(folder, true));
   source_files::height_at(*source, {-180 + 5005 * 0.05, 90 - 1005 * 0.05});
   const std::size_t bytes = mars::TileStore::common().bytes();
-  for (int n = 0; n < 50; ++n) EXPECT_TRUE(std::isnan(source_files::height_at(*source, {-170.0 + 3 * n / 2, -40})));
+  for (int n = 0; n < 50; ++n)
+    EXPECT_TRUE(std::isnan(source_files::height_at(*source, {-170.0 + 3 * n / 2, -40})));
   EXPECT_EQ(mars::TileStore::common().bytes(), bytes);
 }
 

@@ -63,7 +63,7 @@ class DragTest : public ExploreWindowTest, public testing::WithParamInterface<co
 
 TEST_P(DragTest, AMotionBeginsWithTheGroundOfTheImageAtRest) {
   ASSERT_EQ(extra_.session.settings.set("lod.frame_ms", "2"), "");
-  open(960, 540, GetParam());
+  open(640, 360, GetParam());
   ASSERT_GE(planet_->meta().finest_level, 5);
   int drags = 0;
   for (const mars::Pose& pose : {mars::Pose{20, 30, 60'000, 30, -90, 0},
@@ -75,12 +75,12 @@ TEST_P(DragTest, AMotionBeginsWithTheGroundOfTheImageAtRest) {
     for (int drag = 0; drag < 5; ++drag, ++drags) {
       const int at_rest = finest_level(*window_);
       ASSERT_GT(at_rest, 0);
-      move(700, 350);
+      move(480, 220);
       robot_->press();
       int images = 0;
       for (int n = 1; n <= 10; ++n) {
         const std::int64_t before = window_->images();
-        move(700 + 5 * n, 350);
+        move(480 + 5 * n, 220);
         for (int k = 0; k < 200 && window_->images() == before; ++k) iterate(1);
         images += window_->images() != before ? 1 : 0;
         // As the view moves, the ground of a level may leave it.
@@ -107,7 +107,7 @@ TEST_P(DragTest, AMotionOverStalledStorageKeepsTheGroundOfTheImageAtRest) {
     std::this_thread::sleep_for(std::chrono::milliseconds(read_ms));
   });
   ASSERT_EQ(extra_.session.settings.set("lod.frame_ms", "20"), "");
-  open(960, 540, GetParam());
+  open(640, 360, GetParam());
   for (const mars::Pose& pose : {mars::Pose{20, 29.8, 20'000, 0, -30, 0}, {20.1, 29.9, 9'000, 300, -20, 0}}) {
     for (int drag = 0; drag < 3; ++drag) {
       mars::Pose from = pose;
@@ -115,12 +115,12 @@ TEST_P(DragTest, AMotionOverStalledStorageKeepsTheGroundOfTheImageAtRest) {
       window_->session().put(from);
       settle();
       const int at_rest = finest_level(*window_);
-      move(700, 350);
+      move(480, 220);
       robot_->press();
       read_ms = kStalled_ms;
       for (int n = 1; n <= 10; ++n) {
         const std::int64_t before = window_->images();
-        move(700 + 5 * n, 350 + 5 * n);
+        move(480 + 5 * n, 220 + 5 * n);
         for (int k = 0; k < 400 && window_->images() == before; ++k) iterate(1);
         EXPECT_GT(window_->images(), before);
         EXPECT_GE(finest_level(*window_), at_rest - 1) << "drag " << drag << " image " << n;
@@ -136,7 +136,7 @@ TEST_P(DragTest, AMotionOverStalledStorageKeepsTheGroundOfTheImageAtRest) {
 // The image of the former appearance stands until the tiles of the next one are there.
 TEST_P(DragTest, AChangeOfAppearanceKeepsTheGroundThatIsSeen) {
   change_s_ = 300;  // a slow machine reads them all, too
-  open(960, 540, GetParam());
+  open(640, 360, GetParam());
   window_->session().put({20.1, 29.9, 9'000, 300, -20, 0});
   settle();
   const int at_rest = finest_level(*window_);
