@@ -26,6 +26,7 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
                         std::span<const std::uint8_t> only) {
   ComposedObjects out;
   if (scene.is_empty() || frame.width <= 0) return out;
+  out.clear_m = scene.clear_distance_m(rule.camera_m, rule.tolerance_px / (rule.focal_px * rule.stretch));
   const ObjectRays rays(scene, rule);
   const SunGrid before_sun =
       is_lit(light.request.settings) && !frame.colour.empty() ? SunGrid(rays, light.request.sun) : SunGrid();
@@ -74,7 +75,10 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
     out.screen_space_error_px = std::max(out.screen_space_error_px, drawn.counts.screen_space_error_px);
   }
   std::sort(instances.begin(), instances.end());
-  out.objects = std::unique(instances.begin(), instances.end()) - instances.begin();
+  instances.erase(std::unique(instances.begin(), instances.end()), instances.end());
+  out.objects = static_cast<std::int64_t>(instances.size());
+  out.is_see_through = std::ranges::any_of(
+      instances, [&](std::uint32_t n) { return scene.models()[scene.instance(n).model]->is_see_through(); });
   return out;
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "objects/draw/object_shader.h"
@@ -28,6 +29,9 @@ struct ComposedObjects {
   // that may show, also if none of their pixels does.
   double geometric_error_m = 0;
   double screen_space_error_px = 0;
+  bool is_see_through = false;  // a drawn object may be semi-transparent
+  // Gives a distance from the camera within which there is no object, in the image or beside it.
+  double clear_m = std::numeric_limits<double>::infinity();
 };
 
 // Returns the rule of a request. exact: each object at its finest level.

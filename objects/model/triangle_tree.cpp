@@ -1,6 +1,9 @@
 #include "objects/model/triangle_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace objects {
 
@@ -208,6 +211,36 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
   (void)builder.collapse(0);
   nodes_.shrink_to_fit();
   blocks_.shrink_to_fit();
+}
+
+double TriangleTree::clear_distance_m(const glm::dvec3& place_m) const {
+  if (nodes_.empty()) return std::numeric_limits<double>::infinity();
+  constexpr double kRounding = 1e-5;
+  double clear_m = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, std::uint32_t>> open{{0.0, 0}};  // of inner nodes
+  while (!open.empty()) {
+    const auto [least_m, number] = open.back();
+    open.pop_back();
+    if (least_m >= clear_m) continue;
+    const Node& node = nodes_[number];
+    for (std::size_t lane = 0; node.used >> lane != 0; ++lane) {
+      if ((node.used >> lane & 1) == 0) continue;
+      double squared_m2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double at = place_m[static_cast<glm::length_t>(k)];
+        const double outside = std::max({node.low_m[k][lane] - at, at - node.high_m[k][lane], 0.0});
+        squared_m2 += outside * outside;
+      }
+      const double away_m = std::sqrt(squared_m2) * (1 - kRounding);
+      if (away_m >= clear_m) continue;
+      if (node.blocks[lane] > 0) {
+        clear_m = away_m;
+      } else {
+        open.emplace_back(away_m, node.first[lane]);
+      }
+    }
+  }
+  return clear_m;
 }
 
 std::size_t TriangleTree::bytes() const {

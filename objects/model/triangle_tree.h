@@ -49,6 +49,10 @@ class TriangleTree {
   template <class Accept>
   std::optional<TriangleHit> nearest(const ModelRay& ray, float until, const Accept& accept) const;
 
+  // Returns a distance from a place within which there is no triangle: that to the nearest box of at most a few triangles,
+  // less rounding. Infinity if the tree is empty.
+  double clear_distance_m(const glm::dvec3& place_m) const;
+
   std::size_t bytes() const;
   bool is_empty() const { return nodes_.empty(); }
 

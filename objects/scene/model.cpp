@@ -44,6 +44,8 @@ Model::Model(std::string name, std::vector<Level> levels) : name_(std::move(name
   }
   if (opaque_area > 0) mean_colour_ = colour / opaque_area;
   mean_opacity_ = area > 0 ? opaque_area / area : 0;
+  is_see_through_ = std::ranges::any_of(finest.material_table,
+                                        [](const Material& m) { return m.alpha == AlphaMode::kBlend; });
   const double disc =
       glm::pi<double>() * static_cast<double>(ball_.radius_m) * static_cast<double>(ball_.radius_m);
   mean_silhouette_m2_ = std::min(area / 4, disc);
@@ -69,6 +71,7 @@ Model::Model(std::string name, std::shared_ptr<const StickModel> sticks)
   mean_silhouette_m2_ = std::min((look.area_m2.x + look.area_m2.y + look.area_m2.z) / 3, disc);
   mean_colour_ = look.colour;
   mean_opacity_ = look.opacity;
+  is_see_through_ = look.opacity < 1;
 }
 
 Model::Model(std::string name, std::shared_ptr<const VolumeModel> volume)
@@ -80,6 +83,7 @@ Model::Model(std::string name, std::shared_ptr<const VolumeModel> volume)
   mean_colour_ = {colour.r, colour.g, colour.b};
   mean_silhouette_m2_ = volume_->look().silhouette_m2;
   mean_opacity_ = volume_->look().opacity;
+  is_see_through_ = true;
 }
 
 std::size_t Model::level_within(double geometric_error_m) const {

@@ -50,6 +50,8 @@ class Model {
   // The mean colour of the surface by area, 0 to 255, and its mean opacity, 0 to 1.
   const glm::dvec3& mean_colour() const { return mean_colour_; }
   double mean_opacity() const { return mean_opacity_; }
+  // Returns true if parts of the model may be semi-transparent: several ranges show in a pixel.
+  bool is_see_through() const { return is_see_through_; }
 
   std::size_t bytes() const;
 
@@ -64,6 +66,7 @@ class Model {
   double mean_silhouette_m2_ = 0;
   glm::dvec3 mean_colour_{0, 0, 0};
   double mean_opacity_ = 1;
+  bool is_see_through_ = false;
 };
 
 }  // namespace objects

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
 
@@ -111,6 +112,34 @@ Instance Scene::instance(std::uint32_t n) const {
   const Packed& p = packed_[n];
   const Kind& kind = kinds_[p.kind];
   return {p.position_m, p.rotation, p.scale, kind.model, kind.name, kind.is_mirrored};
+}
+
+double Scene::clear_distance_m(const glm::dvec3& place_m, double error_share) const {
+  double clear_m = std::numeric_limits<double>::infinity();
+  const auto distance_m = [&](const SceneBall& ball) {
+    return std::max(glm::distance(place_m, ball.centre_m) - ball.radius_m, 0.0);
+  };
+  visit([&](const SceneBall& ball) { return distance_m(ball) < clear_m; },
+        [&](std::uint32_t n) {
+          const double to_ball_m = distance_m(ball(n));
+          clear_m =
+              std::min(clear_m, std::max(to_ball_m, clear_of_mesh_m(n, place_m, error_share * to_ball_m)));
+        });
+  return clear_m;
+}
+
+double Scene::clear_of_mesh_m(std::uint32_t n, const glm::dvec3& place_m, double geometric_error_m) const {
+  const Instance i = instance(n);
+  const Model& model = *models_[i.model];
+  if (model.levels().empty()) return 0;
+  const auto scale = static_cast<double>(i.scale);
+  glm::dvec3 place = glm::conjugate(glm::dquat(i.rotation)) * (place_m - i.position_m) / scale;
+  if (i.is_mirrored) place.x = -place.x;
+  // The rotation's rounding turns places.
+  constexpr double kRotationError = 4e-7;
+  const double coarsest_m = scale * model.level_error_m(model.levels().size() - 1);
+  const double off_m = std::min(geometric_error_m, coarsest_m) + kRotationError * scale * glm::length(place);
+  return std::max(scale * model.levels().front().tree.clear_distance_m(place) - off_m, 0.0);
 }
 
 SceneBall Scene::ball(std::uint32_t n) const {

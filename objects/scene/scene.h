@@ -46,6 +46,11 @@ class Scene {
   // Returns the ball around all of them.
   SceneBall ball() const { return nodes_.empty() ? SceneBall{} : nodes_.front().ball; }
 
+  // Returns a distance from a place within which there is no object; infinity if there are none. Of meshes it is that to
+  // boxes of a few triangles, of other models that to their balls. Levels may be used whose errors are up to `error_share`
+  // of the distance of their balls.
+  double clear_distance_m(const glm::dvec3& place_m, double error_share) const;
+
   // Calls leaf(n) for each instance whose own ball and all balls above it enter(ball) accepts, in ascending order.
   template <class Enter, class Leaf>
   void visit(const Enter& enter, const Leaf& leaf) const;
@@ -77,6 +82,9 @@ class Scene {
   };
 
   void build(std::vector<Instance>& instances);
+  // Returns a distance from a place within which an instance has no triangle at levels of this error and less; 0 if it has
+  // no triangles.
+  double clear_of_mesh_m(std::uint32_t instance, const glm::dvec3& place_m, double geometric_error_m) const;
 
   Models models_;
   std::vector<Kind> kinds_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -69,6 +70,61 @@ TEST(Scene, VisitsExactlyWhatABallMeets) {
       if (glm::distance(b.centre_m, centre) <= b.radius_m + radius_m) expected.push_back(i);
     }
     EXPECT_EQ(visited, expected);
+  }
+}
+
+// Of boxes in closed form: the distance of a place from an oriented box.
+TEST(Scene, TheClearDistanceIsThatOfTheNearestBox) {
+  const auto model = box_model();
+  const Scene scene({model}, random_instances(500, 5));
+  const glm::dvec3 low_m(-1, -1, 0);  // of the model, which stands on z = 0
+  const glm::dvec3 high_m(1, 1, 2);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> any(-1500, 1500);
+  for (int n = 0; n < 200; ++n) {
+    const glm::dvec3 place_m = glm::dvec3(3.4e6, 0, 0) + glm::dvec3(any(random), any(random), any(random));
+    double nearest_m = 1e9;
+    for (std::uint32_t k = 0; k < scene.size(); ++k) {
+      const Instance i = scene.instance(k);
+      glm::dvec3 place =
+          glm::inverse(glm::dquat(i.rotation)) * (place_m - i.position_m) / static_cast<double>(i.scale);
+      if (i.is_mirrored) place.x = -place.x;
+      const glm::dvec3 outside = glm::max(glm::max(low_m - place, place - high_m), glm::dvec3(0));
+      nearest_m = std::min(nearest_m, static_cast<double>(i.scale) * glm::length(outside));
+    }
+    const double clear_m = scene.clear_distance_m(place_m, 0);
+    EXPECT_LE(clear_m, nearest_m);
+    EXPECT_GE(clear_m, nearest_m * 0.99 - 0.01);
+    // A box has one level, of error 0.
+    EXPECT_EQ(scene.clear_distance_m(place_m, 0.1), clear_m);
+  }
+  EXPECT_EQ(Scene().clear_distance_m({0, 0, 0}, 0.5), std::numeric_limits<double>::infinity());
+}
+
+TEST(Scene, TheClearDistanceHoldsForCoarserLevels) {
+  const auto model = std::make_shared<const Model>("rock", make_levels(make_rock(3, 4)));
+  ASSERT_GT(model->levels().size(), 1U);
+  const Scene scene({model}, random_instances(50, 8));
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> any(-1200, 1200);
+  constexpr double kShare = 0.02;
+  for (int n = 0; n < 100; ++n) {
+    const glm::dvec3 place_m = glm::dvec3(3.4e6, 0, 0) + glm::dvec3(any(random), any(random), any(random));
+    double nearest_m = 1e9;
+    for (std::uint32_t k = 0; k < scene.size(); ++k) {
+      const Instance i = scene.instance(k);
+      const auto scale = static_cast<double>(i.scale);
+      const SceneBall ball = scene.ball(k);
+      const double to_ball_m = std::max(glm::distance(place_m, ball.centre_m) - ball.radius_m, 0.0);
+      const Mesh& mesh = model->levels()[model->level_within(kShare * to_ball_m / scale)].mesh;
+      for (glm::dvec3 p : mesh.positions_m) {
+        if (i.is_mirrored) p.x = -p.x;
+        nearest_m =
+            std::min(nearest_m, glm::distance(place_m, i.position_m + scale * (glm::dquat(i.rotation) * p)));
+      }
+    }
+    EXPECT_LE(scene.clear_distance_m(place_m, kShare), nearest_m);
+    EXPECT_GT(scene.clear_distance_m(place_m, kShare), 0.9 * nearest_m - 5);
   }
 }
 

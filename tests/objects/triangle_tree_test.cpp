@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "objects/model/distance_tree.h"
 #include "objects/model/shapes.h"
 
 namespace objects {
@@ -28,6 +29,26 @@ TEST(TriangleTree, MeetsABoxWhereItsSidesAre) {
   EXPECT_TRUE(from_inside->is_back);
   EXPECT_FALSE(tree.nearest({{5, 0, 3}, {0, 1, 0}}, kFar, kAny));
   EXPECT_FALSE(tree.nearest({{0.3F, 0.7F, 20}, {0, 0, -1}}, 13.9F, kAny));
+}
+
+TEST(TriangleTree, NoTriangleReachesIntoTheClearDistance) {
+  EXPECT_EQ(TriangleTree().clear_distance_m({0, 0, 0}), std::numeric_limits<double>::infinity());
+  for (const Mesh& mesh : {make_rock(5, 3), make_torus(0.7F, 0.25F, 48, 16)}) {
+    const TriangleTree tree(mesh);
+    const DistanceTree exact(mesh);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> any(-2, 2);
+    double lost = 0;
+    for (int n = 0; n < 500; ++n) {
+      const glm::dvec3 place_m(any(random), any(random), any(random));
+      const double away_m = exact.nearest(place_m).distance_m;
+      const double clear_m = tree.clear_distance_m(place_m);
+      EXPECT_LE(clear_m, away_m);
+      lost = std::max(lost, away_m - clear_m);
+    }
+    EXPECT_LT(lost, 0.25);  // boxes of a few triangles
+    EXPECT_GT(tree.clear_distance_m({0, 0, 100}), 97);
+  }
 }
 
 TEST(TriangleTree, WeightsGiveThePlace) {

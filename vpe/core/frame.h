@@ -134,6 +134,9 @@ struct DrawResult {
   bool settled = true;
   std::vector<MissingTile> missing;   // empty if the image is complete
   std::vector<std::string> failures;  // tiles that cannot be read; a renderer reports each once
+  // Gives a distance from the camera within which there is no object, in the image or beside it.
+  double clear_of_objects_m = std::numeric_limits<double>::infinity();
+  bool shows_see_through = false;  // an object in the image may be semi-transparent: pixels show several ranges
 };
 
 // Draws images of one planet. gl::make_polygon_renderer() makes one that draws triangle meshes with OpenGL,

@@ -10,8 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tests/gl/gl_fixture.h"
-#include "vpe/core/stereo.h"
+#include "tests/app/pictures/carried_images.h"
 #include "vpe/voxel/ray_renderer.h"
 
 namespace {
@@ -22,36 +21,17 @@ using test_support::Random;
 using vpe::app::CarriedDrawer;
 
 constexpr unsigned kSeed = 20261125;
-constexpr int kWidth = 96;
-constexpr int kHeight = 64;
-
-struct Eyes {
-  core::DrawRequest left;
-  core::DrawRequest right;
-};
-
-// Two eyes `base_m` apart; by default a thirtieth of the height.
-Eyes eyes_at(const mars::Pose& pose, double radius_m, double base_m) {
-  core::DrawRequest request = test_support::request_for(pose, radius_m, kWidth, kHeight);
-  request.settings.mode = core::Mode::kLit;
-  request.want_range = true;
-  Eyes eyes{request, request};
-  eyes.left.view = core::eye_view(request.view, -0.5 * base_m, std::nullopt);
-  eyes.right.view = core::eye_view(request.view, 0.5 * base_m, std::nullopt);
-  return eyes;
-}
+using carried_images::bumpy_planet;
+using carried_images::Eyes;
+using carried_images::eyes_at;
+using carried_images::kHeight;
+using carried_images::kWidth;
+using carried_images::off_px;
 
 class CarriedDrawerTest : public test_support::GlTest {
  protected:
   CarriedDrawerTest()
       : planet_(bumpy_planet()), rays_(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2})) {}
-
-  static std::shared_ptr<const paging::PlanetFile> bumpy_planet() {
-    static const test_support::TempDir folder;
-    static const auto planet = test_support::build_fake(
-        folder / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height), 20'000);
-    return planet;
-  }
 
   // Returns a pose somewhere above the ground that looks ahead or down.
   mars::Pose any_pose(Random& random, double& height_m) const {
@@ -71,24 +51,6 @@ class CarriedDrawerTest : public test_support::GlTest {
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::unique_ptr<core::PixelRenderer> rays_;
 };
-
-// Returns by how much a carried pixel is off, as a difference of parallax, from the best that the full image has within two
-// pixels: silhouettes are those of the first image's pixels.
-double off_px(const core::DrawRequest& eye, double base_m, const core::Frame& is, const core::Frame& full,
-              int x, int y) {
-  constexpr int kAround = 2;
-  const auto parallax_px = [&](const core::Frame& frame, int u, int v) {
-    const double depth_m = static_cast<double>(frame.range_m[static_cast<std::size_t>(v * kWidth + u)]) *
-                           glm::dot(core::pixel_ray(eye.view, u + 0.5, v + 0.5), eye.view.camera.axes.forward);
-    return base_m * core::focal_px(eye.view) / depth_m;
-  };
-  const double carried_px = parallax_px(is, x, y);
-  double best_px = std::numeric_limits<double>::infinity();
-  for (int v = std::max(y - kAround, 0); v <= std::min(y + kAround, kHeight - 1); ++v)
-    for (int u = std::max(x - kAround, 0); u <= std::min(x + kAround, kWidth - 1); ++u)
-      best_px = std::min(best_px, std::abs(carried_px - parallax_px(full, u, v)));
-  return best_px;
-}
 
 TEST_F(CarriedDrawerTest, CarriedPixelsKeepTheCertificateInFiveHundredPairs) {
   Random random(kSeed);

@@ -41,8 +41,14 @@ std::optional<double> nearest_ground_m(const PanoramaRequest& request, double ra
     for (const panorama::Piece& piece : panorama::pieces_of(map, middle, strip, 0)) {
       InterruptGuard::check();
       draw_request.view = piece.view;
-      const auto base_m = core::comfortable_base_m(renderer.draw(draw_request).frame.range_m);
-      if (base_m) nearest_m = std::min(nearest_m.value_or(HUGE_VAL), *base_m * core::kNearestToBase);
+      const core::DrawResult drawn = renderer.draw(draw_request);
+      if (request.stereo->carried_gap_px && drawn.shows_see_through) {
+        throw UsageError(
+            "--stereo-method reproject: pixels of semi-transparent objects show several ranges and are not carried; "
+            "use --stereo-method full");
+      }
+      if (const auto base_m = core::comfortable_base_m(drawn.frame.range_m))
+        nearest_m = std::min(nearest_m.value_or(HUGE_VAL), *base_m * core::kNearestToBase);
     }
   }
   return nearest_m;

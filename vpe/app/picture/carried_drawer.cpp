@@ -106,6 +106,8 @@ core::DrawResult CarriedDrawer::draw_first(const core::DrawRequest& request, glm
   result.certificate.corner_stretch = core::corner_stretch(request.view);
   view_ = wide.view;
   certificate_ = result.certificate;
+  clear_of_objects_m_ = result.clear_of_objects_m;
+  shows_see_through_ = result.shows_see_through;
   if (margin_px == glm::ivec2(0)) {
     raw_ = result.frame;
   } else {
@@ -137,7 +139,8 @@ core::DrawResult CarriedDrawer::draw_carried(const core::DrawRequest& request) {
   drawing_s_ = 0;
   const double ground_m =
       paging::distance_to_ground_m(surface_, request.view.camera.position_m, request.settings.exaggeration);
-  if (certificate_.is_below_ground || ground_m == 0) {
+  // A semi-transparent pixel has several ranges, and moves by none of them alone.
+  if (certificate_.is_below_ground || ground_m == 0 || shows_see_through_) {
     carried_ = {};
     return renderer_.draw(request);
   }
@@ -145,7 +148,9 @@ core::DrawResult CarriedDrawer::draw_carried(const core::DrawRequest& request) {
   options.gap_px = options_.gap_px;
   options.most_added_px = static_cast<float>(options_.most_added_px);
   options.filters = options_.filters;
-  options.nearest_m = kOfDistance * ground_m;
+  const double moved_m = glm::distance(view_.camera.position_m, request.view.camera.position_m);
+  // Farther from the camera levels of objects are coarser, too, by less than the distance.
+  options.nearest_m = std::min(kOfDistance * ground_m, std::max(clear_of_objects_m_ - 2 * moved_m, 0.0));
   carrier_.carry(view_, raw_, request.view, options, pool_, carried_);
   if (static_cast<double>(carried_.count(warp::Origin::kOpen)) >
       options_.most_drawn_share * static_cast<double>(carried_.origin.size())) {

@@ -59,8 +59,8 @@ class CarriedDrawer {
   core::DrawResult draw_first(const core::DrawRequest& request, glm::ivec2 margin_px = {0, 0});
 
   // Draws an image by carrying the last first one. Its certificate has the larger bounds of the first image's and of the
-  // pixels that were drawn, and what carrying adds. Draws all pixels if either camera is below the ground, or by
-  // CarriedDrawerOptions::most_drawn_share. Both requests may differ in their views only. Throws std::logic_error without
+  // pixels that were drawn, and what carrying adds. Draws all pixels if either camera is below the ground, if the first
+  // image shows a semi-transparent object, or by CarriedDrawerOptions::most_drawn_share. Both requests may differ in their views only. Throws std::logic_error without
   // a first image.
   core::DrawResult draw_carried(const core::DrawRequest& request);
 
@@ -84,6 +84,8 @@ class CarriedDrawer {
   core::View view_;  // of the first image
   core::Frame raw_;  // the first image before edges are smoothed
   core::Certificate certificate_;
+  double clear_of_objects_m_ = 0;
+  bool shows_see_through_ = false;
   bool has_first_ = false;
   double drawing_s_ = 0;
   warp::Carrier carrier_;

@@ -37,7 +37,8 @@ class ObjectPass {
   }
 
   void draw(const PlacedScene& placed, const core::DrawRequest& request, bool is_exact,
-            std::span<const std::uint8_t> only, core::Frame& frame, core::Certificate& certificate) {
+            std::span<const std::uint8_t> only, core::Frame& frame, core::DrawResult& result) {
+    core::Certificate& certificate = result.certificate;
     core::DrawRequest for_planet = request;
     core::for_body(for_planet.settings, planet_->meta().body);
     const paging::GroundLight light(shader_, surface_,
@@ -46,6 +47,8 @@ class ObjectPass {
     const objects::ComposedObjects drawn =
         objects::compose(*placed.scene, {for_planet, planet_->radius_m(), &light},
                          objects::level_rule(for_planet, is_exact), pool_, frame, only);
+    result.clear_of_objects_m = drawn.clear_m;
+    result.shows_see_through = drawn.is_see_through;
     certificate.objects = {drawn.objects, drawn.geometric_error_m, drawn.screen_space_error_px};
     certificate.shift_bound_px = std::max(certificate.shift_bound_px, drawn.screen_space_error_px);
     if (certificate.image_bound_px)
@@ -111,7 +114,7 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
     core::DrawResult result = ground_->draw(below);
     if (!result.certificate.is_below_ground && !result.frame.range_m.empty()) {
       pass().draw(placed, within_triangle_limit(request, result.certificate), is_exact(request), {},
-                  result.frame, result.certificate);
+                  result.frame, result);
     }
     core::apply_gamma(result.frame.colour, request.settings.gamma);
     if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
@@ -156,7 +159,7 @@ class ObjectPixelRenderer : public ObjectRenderer<core::PixelRenderer> {
     const PlacedScene placed = pass().scene(request);
     core::DrawResult result = ground_->draw_pixels(ground_request(request, placed.interest), wanted, frame);
     if (!result.certificate.is_below_ground)
-      pass().draw(placed, request, is_exact(request), wanted.is_wanted, frame, result.certificate);
+      pass().draw(placed, request, is_exact(request), wanted.is_wanted, frame, result);
     return result;
   }
 };
