@@ -6,12 +6,12 @@
 //   r > R             rim_m (r / R)^-3, faded to 0 from half of the way to the end of the ejecta on
 //
 // Sizes that the user does not give follow from the diameter D = 2 R of the crest, as observed:
-// - depth from the crest to the floor: 0.2 D of fresh simple craters (Pike 1977, Proc. Lunar Sci. Conf. 8, 3427-3436,
-//   has 0.196 D^1.01), or 0.36 D^0.49 km of complex craters on Mars where that is less (D in km; Garvin, Sakimoto and
-//   Frawley 2003, Sixth Int. Conf. on Mars, abstract 3277). Both meet at 3.2 km.
+// - depth from the crest to the floor: 0.2 D of fresh simple craters (Pike 1974, Geophys. Res. Lett. 1, 291-294; Pike
+//   1977, Proc. Lunar Sci. Conf. 8, 3427-3436, has 0.196 D^1.01), or 0.36 D^0.49 km of complex craters on Mars where that
+//   is less (D in km; Garvin, Sakimoto and Frawley 2003, Sixth Int. Conf. on Mars, abstract 3277). Both meet at 3.2 km.
 // - the rim's height above the ground: a fifth of the depth, 0.04 D for simple craters (Pike 1977).
-// - from kComplexDiameter_m on (simple craters on Mars end at 7 to 8 km: Garvin and Frawley 1998, Geophys. Res. Lett. 25,
-//   4405-4408) a flat floor with a diameter of 0.187 D^1.249 km (Pike 1977) and a central peak of 0.04 D^0.51 km (Garvin
+// - from kComplexDiameter_m on (simple craters on Mars end at 7.5 to 8.5 km: Garvin and Frawley 1998, Geophys. Res. Lett.
+//   25, 4405-4408) a flat floor with a diameter of 0.187 D^1.249 km (Pike 1977) and a central peak of 0.04 D^0.51 km (Garvin
 //   et al. 2003), at most half of the depth. Both grow from nothing over one doubling of D, so that nothing jumps while
 //   a diameter is animated.
 // - ejecta fall as r^-3 (McGetchin, Settle and Head 1973, Earth Planet. Sci. Lett. 20, 226-236).
