@@ -11,6 +11,8 @@
 #include "paging/planet/check_meta.h"
 #include "paging/planet/planet_connection.h"
 #include "paging/planet/planet_overlay.h"
+#include "paging/planet/planet_user.h"
+#include "vpe/base/number.h"
 
 namespace paging {
 
@@ -52,6 +54,42 @@ PlanetFile::PlanetFile(const std::string& path, BeforeRead before_read)
   } catch (const DatabaseError& e) {
     throw PlanetError(std::string(e.what()) + "; not a planet file, or damaged: build it again");
   }
+}
+
+// Another planet of the same pages: it reads through the connections of this one.
+PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile> earlier)
+    : path_(base.path_),
+      before_read_(base.before_read_),
+      meta_(base.meta_),
+      meta_checksum_(base.meta_checksum_),
+      tree_(std::make_unique<lod::TileTree>(*base.tree_)),
+      image_keys_(base.image_keys_),
+      mask_keys_(base.mask_keys_),
+      nodata_keys_(base.nodata_keys_),
+      version_(next_version()),
+      file_(base.file_ ? base.file_ : base.shared_from_this()),
+      overlay_(base.overlay_),
+      connections_([this] { return std::make_unique<Connection>(*this); }),
+      earlier_(std::move(earlier)),
+      compared_version_(version_) {}
+
+std::shared_ptr<const PlanetFile> PlanetFile::compared_with(std::shared_ptr<const PlanetFile> earlier) const {
+  require_comparable(*earlier, *this);
+  return std::shared_ptr<const PlanetFile>(new PlanetFile(*this, std::move(earlier)));
+}
+
+void require_comparable(const PlanetFile& earlier, const PlanetFile& later) {
+  const PlanetMeta& a = earlier.meta();
+  const PlanetMeta& b = later.meta();
+  const auto refuse = [&](const std::string& what, const std::string& of_a, const std::string& of_b) {
+    throw PlanetError(earlier.path() + ": cannot be compared with " + later.path() + ": " + what + " is " +
+                      of_a + ", and there " + of_b + "; build both planets alike");
+  };
+  const auto metres = [](double m) { return vpe::base::format_number(m) + " m"; };
+  if (a.body != b.body) refuse("its body", a.body, b.body);
+  if (a.radius_m != b.radius_m) refuse("its radius", metres(a.radius_m), metres(b.radius_m));
+  if (a.shape != b.shape) refuse("its shape", a.shape, b.shape);
+  if (!(a.datum == b.datum)) refuse("the datum of its heights", to_string(a.datum), to_string(b.datum));
 }
 
 Database PlanetFile::connect() const {

@@ -66,6 +66,16 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   std::shared_ptr<const PlanetFile> with(std::shared_ptr<const TilePatch> patch) const;
   bool is_patched() const { return overlay_ != nullptr; }
 
+  // Returns this planet with another one of the same body, radius, shape and datum, which colour=difference subtracts.
+  // Pages are the same, and so are the connections; an index of all tiles takes memory. Planets that with() returns keep
+  // the other one. Throws PlanetError with what differs.
+  std::shared_ptr<const PlanetFile> compared_with(std::shared_ptr<const PlanetFile> earlier) const;
+  // Returns the other planet; null for none.
+  const std::shared_ptr<const PlanetFile>& earlier() const { return earlier_; }
+  // Returns the number of the planet that compared_with() returned, 0 for none: differences of one tile and one number
+  // of both are equal.
+  std::uint64_t compared_version() const { return compared_version_; }
+
   // Returns a number that no other planet of this process has, and that is larger than that of the planet under it.
   std::uint64_t version() const { return version_; }
   // Returns the number of the last planet with which a page of the tile changed, among this one and those under it.
@@ -113,6 +123,7 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   struct Connection;
   PlanetFile(const std::string& path, BeforeRead before_read);
   PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch);
+  PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile> earlier);
   static std::uint64_t next_version();
   void read_index(const Database& db);
   void set_nodata();  // from mask_keys_
@@ -132,10 +143,13 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   std::vector<std::int64_t> mask_keys_;    // of tiles with nodata posts, sorted
   std::vector<std::int64_t> nodata_keys_;  // of these and of all above them, sorted
   std::uint64_t version_ = 0;
-  // Hold the planet that has the connections, and what lies over it, if the planet is a patched one. Else null.
+  // Hold the planet that has the connections, if it is another one, and what lies over it, if the planet is a patched
+  // one. Else null.
   std::shared_ptr<const PlanetFile> file_;
   std::shared_ptr<const PlanetOverlay> overlay_;
-  mutable vpe::base::ObjectPool<Connection> connections_;  // unused in a patched planet
+  mutable vpe::base::ObjectPool<Connection> connections_;  // unused where file_ is set
+  std::shared_ptr<const PlanetFile> earlier_;
+  std::uint64_t compared_version_ = 0;
 };
 
 }  // namespace paging

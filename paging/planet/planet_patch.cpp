@@ -205,7 +205,9 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> 
       mask_keys_(base.mask_keys_),
       version_(next_version()),
       file_(base.file_ ? base.file_ : base.shared_from_this()),
-      connections_([this] { return std::make_unique<Connection>(*this); }) {
+      connections_([this] { return std::make_unique<Connection>(*this); }),
+      earlier_(base.earlier_),
+      compared_version_(base.compared_version_) {
   check_patch_meta(base.meta_, meta_);
   check_source_numbers(base.meta_, *patch);
   try {

@@ -48,7 +48,7 @@ const PatchTile* PlanetFile::patched_tile(std::int64_t row) const {
 
 template <class Read>
 auto PlanetFile::read(const Read& fetch) const {
-  auto& connections = is_patched() ? file_->connections_ : connections_;
+  auto& connections = file_ ? file_->connections_ : connections_;
   for (int n = 0; n < kReadTries; ++n) {
     auto connection = connections.acquire();
     auto result = fetch(*connection);

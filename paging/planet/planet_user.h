@@ -29,6 +29,10 @@ class PlanetUser {
 //   change_planet(*renderer, planet->with(patch));
 void change_planet(vpe::core::Renderer& renderer, std::shared_ptr<const PlanetFile> planet);
 
+// Throws PlanetError, which names both files and what differs, if heights of the planets cannot be subtracted: another body,
+// radius, shape or datum.
+void require_comparable(const PlanetFile& earlier, const PlanetFile& later);
+
 // Throws std::invalid_argument if a user of `from` cannot go over to `to`.
 void require_same_grid(const PlanetFile& from, const PlanetFile& to);
 

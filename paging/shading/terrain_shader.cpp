@@ -18,13 +18,15 @@ ColourSource colour_source_of(vpe::core::Colour colour, bool has_image) {
     case vpe::core::Colour::kSlope: return ColourSource::kSlope;
     case vpe::core::Colour::kAspect: return ColourSource::kAspect;
     case vpe::core::Colour::kImage: return has_image ? ColourSource::kImageAtPosts : ColourSource::kPlain;
+    case vpe::core::Colour::kDifference: return ColourSource::kDifference;
     case vpe::core::Colour::kNone: break;
   }
   return ColourSource::kPlain;
 }
 
 bool shows_scale(ColourSource s) {
-  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect;
+  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect ||
+         s == ColourSource::kDifference;
 }
 
 // Returns the direction of steepest descent. At the poles, north is along the meridian of longitude 0.
@@ -76,21 +78,39 @@ bool needs_scale(const vpe::core::Appearance& appearance, bool has_image) {
   return shows_scale(shading.colour_source) || shows_scale(shading.hue);
 }
 
+bool shows_difference(const ShadingParams& params) {
+  return params.colour_source == ColourSource::kDifference || params.hue == ColourSource::kDifference;
+}
+
+namespace {
+
+// Heights of the other planet are read through half of the share for shadows.
+std::shared_ptr<const Surface> earlier_surface(const PlanetFile& planet, double share, std::size_t budget) {
+  if (!planet.earlier()) return nullptr;
+  return std::make_shared<const Surface>(planet.earlier(), share_of(share / 2, budget));
+}
+
+}  // namespace
+
 TerrainShader::TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
                              const ShaderBudgetShares& shares)
     : planet_(std::move(planet)),
       shares_(shares),
-      surface_(planet_, share_of(shares.surface, budget_bytes)),
+      surface_(planet_, share_of(planet_->earlier() ? shares.surface / 2 : shares.surface, budget_bytes)),
+      earlier_(earlier_surface(*planet_, shares.surface, budget_bytes)),
       heights_(share_of(shares.heights, budget_bytes)),
       normals_(share_of(shares.normals, budget_bytes)),
       images_(share_of(shares.images, budget_bytes)) {}
 
 std::size_t TerrainShader::bytes_resident() const {
-  return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
+  const std::size_t earlier = earlier_ ? earlier_->bytes_resident() : 0;
+  return earlier + surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
 }
 
 void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes) {
   surface_.change_planet(planet);
+  if (planet->earlier() != planet_->earlier())
+    earlier_ = earlier_surface(*planet, shares_.surface, budget_bytes);
   planet_ = std::move(planet);
   heights_.set_limit(share_of(shares_.heights, budget_bytes));
   normals_.set_limit(share_of(shares_.normals, budget_bytes));
@@ -99,7 +119,8 @@ void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std:
 
 std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key, MadeOf made_of,
                               const ShadingParams& params) {
-  const std::uint64_t version = planet.version(key, made_of);
+  std::uint64_t version = planet.version(key, made_of);
+  if (shows_difference(params)) version = std::max(version, planet.compared_version());
   if (!params.lit || !params.shadows || !planet.is_patched()) return version;
   return std::max(version, planet.shadow_version(key, params.exaggeration));
 }
@@ -107,7 +128,8 @@ std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key,
 TerrainShader::NormalKey TerrainShader::normal_key(const lod::TileKey& key, const ShadingParams& params) const {
   return {{key, shading_version(*planet_, key, MadeOf::kBorders, params)},
           params.exaggeration,
-          params.lit && params.shadows ? params.sun : glm::dvec3(0)};
+          params.lit && params.shadows ? params.sun : glm::dvec3(0),
+          shows_difference(params) ? planet_->compared_version() : 0};
 }
 
 std::shared_ptr<const TileHeights> TerrainShader::heights(const lod::TileKey& key) const {
@@ -171,7 +193,8 @@ int TerrainShader::useful_intervals(const lod::TileKey& key, ColourSource colour
 glm::dvec3 TerrainShader::source_colour(ColourSource source, const Ground& at,
                                         const ShadingParams& params) const {
   switch (source) {
-    case ColourSource::kElevation: return (*params.scale)(at.height_m);
+    case ColourSource::kElevation:
+    case ColourSource::kDifference: return (*params.scale)(at.height_m);
     case ColourSource::kSlope: return (*params.scale)(vpe::core::slope_deg(at.normal, at.up));
     case ColourSource::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
     case ColourSource::kImage:
@@ -246,14 +269,18 @@ std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, 
   if (params.flat) {
     const bool lower = x.rest >= y.rest;
     std::array<glm::dvec3, 3> corners;
+    // The tile has differences in place of heights.
+    const auto own = shows_difference(params) ? heights(key) : nullptr;
     at.height_m = 0;
     const std::array<std::array<std::size_t, 2>, 3> posts{
         {{0, 0}, {lower ? std::size_t{1} : std::size_t{0}, lower ? std::size_t{0} : std::size_t{1}}, {1, 1}}};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = posts[k];
-      const double height = static_cast<double>(ground.posts[(y.index + b) * side + x.index + a].height_m);
+      const std::size_t of_post = (y.index + b) * side + x.index + a;
+      const double value = static_cast<double>(ground.posts[of_post].height_m);
+      const double height = own ? own->posts.height_m[of_post] : value;
       corners[k] = post(a, b) * (radius + params.exaggeration * height);
-      at.height_m += height / 3;
+      at.height_m += value / 3;
     }
     const glm::dvec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     at.up = glm::normalize(middle);

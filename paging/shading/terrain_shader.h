@@ -30,11 +30,16 @@ enum class ColourSource {
   kAspect,
   kImage,
   kImageAtPosts,  // the image sampled at posts and interpolated between them
+  kDifference,    // height above the ground of PlanetFile::earlier()
 };
 
 constexpr bool shows_image(ColourSource s) {
   return s == ColourSource::kImage || s == ColourSource::kImageAtPosts;
 }
+
+struct ShadingParams;
+// Returns whether colours show heights above the ground of PlanetFile::earlier().
+bool shows_difference(const ShadingParams& params);
 
 // Describes how terrain is coloured and lit.
 struct ShadingParams {
@@ -48,7 +53,7 @@ struct ShadingParams {
   double diffuse = 1.235;   // light of a sun in the zenith
   double exaggeration = 1;
   glm::dvec3 plain = vpe::core::kPlainGround;           // of kPlain
-  std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope or aspect is shown
+  std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope, aspect or difference is shown
   // Two scales are equal when they are one object.
   bool operator==(const ShadingParams&) const = default;
 };
@@ -60,7 +65,8 @@ ShadingParams shading_params(const vpe::core::Appearance& appearance, const glm:
 // Returns whether an appearance shows a colour scale.
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
-// Holds normals and heights at the posts of one stored tile, row 0 at the south.
+// Holds normals and heights at the posts of one stored tile, row 0 at the south. Where shows_difference(), heights are
+// those above the ground of the other planet in the post's direction, and posts that have no data there are nodata too.
 struct NormalTile {
   // 16 bytes, so that one load takes all of a post.
   struct Post {
@@ -178,7 +184,8 @@ class TerrainShader {
   struct NormalKey {
     TileVersion tile;
     double exaggeration;
-    glm::dvec3 sun;  // for shadows, else 0
+    glm::dvec3 sun;              // for shadows, else 0
+    std::uint64_t compared = 0;  // PlanetFile::compared_version() for differences, else 0
     bool operator==(const NormalKey&) const = default;
   };
   NormalKey normal_key(const lod::TileKey& key, const ShadingParams& params) const;
@@ -193,6 +200,8 @@ class TerrainShader {
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
   NormalTile make_normals(const lod::TileKey& key, const ShadingParams& params) const;
+  // Puts differences in place of heights.
+  void subtract_earlier(NormalTile& tile) const;
   // Returns the image tile over a block, or none when no image is shown.
   ImageBlock image_block(const lod::TileKey& block, const ShadingParams& params) const;
   glm::dvec3 source_colour(ColourSource source, const Ground& at, const ShadingParams& params) const;
@@ -208,7 +217,8 @@ class TerrainShader {
 
   std::shared_ptr<const PlanetFile> planet_;
   ShaderBudgetShares shares_;
-  Surface surface_;  // casts shadows
+  Surface surface_;                         // casts shadows
+  std::shared_ptr<const Surface> earlier_;  // of planet_->earlier(); null: none
   mutable vpe::base::LruCache<TileVersion, TileHeights, TileVersionHash> heights_;
   mutable vpe::base::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
   mutable vpe::base::LruCache<TileVersion, ImageTile, TileVersionHash> images_;

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "paging/shading/terrain_shader.h"
+#include "paging/surface/height_difference.h"
 
 namespace paging {
 
@@ -112,6 +113,7 @@ NormalTile TerrainShader::make_normals(const lod::TileKey& key, const ShadingPar
                            static_cast<float>(posts.height_m[out.posts.size()])});
     }
   }
+  if (shows_difference(params)) subtract_earlier(out);
   if (!params.lit || !params.shadows) return out;
   const double spacing_m = lod::nominal_side_m(key.level, radius) / n;
   out.sees_sun.reserve(side * side);
@@ -123,6 +125,22 @@ NormalTile TerrainShader::make_normals(const lod::TileKey& key, const ShadingPar
     }
   }
   return out;
+}
+
+void TerrainShader::subtract_earlier(NormalTile& tile) const {
+  if (!earlier_) {
+    throw PlanetError(
+        planet_->path() +
+        ": there is no earlier planet to subtract; colour=difference needs --compare EARLIER, of 'vpe "
+        "render' or 'vpe explore'");
+  }
+  const std::vector<double>& later_m = heights(tile.key)->posts.height_m;
+  const PostHeights earlier = heights_at_posts(*earlier_, tile.key, tile.side - 1);
+  for (std::size_t n = 0; n < tile.posts.size(); ++n)
+    tile.posts[n].height_m = static_cast<float>(later_m[n] - earlier.height_m[n]);
+  if (earlier.nodata.empty()) return;
+  tile.nodata.resize(tile.posts.size());
+  for (std::size_t n = 0; n < tile.posts.size(); ++n) tile.nodata[n] = tile.nodata[n] || earlier.nodata[n];
 }
 
 // Casts from slightly above the surface, because the facets at the place itself would stop the ray.

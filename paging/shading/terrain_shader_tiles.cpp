@@ -122,8 +122,13 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
   const ImageBlock image_block = this->image_block(key, params);
-  const std::shared_ptr<const TileHeights> posts = planet_->has_nodata(key) ? heights(deepest(key)) : nullptr;
-  const bool may_be_nodata = posts && !posts->nodata.empty();
+  ShadingParams of_values = params;
+  of_values.lit = false;
+  const auto values = shows_difference(params) ? normals(deepest(key), of_values) : nullptr;
+  const auto posts = !values && planet_->has_nodata(key) ? heights(deepest(key)) : nullptr;
+  const std::vector<bool>* const nodata = values ? &values->nodata : posts ? &posts->nodata : nullptr;
+  const bool may_be_nodata = nodata != nullptr && !nodata->empty();
+  const int n = planet_->meta().tile.intervals();
   std::vector<glm::dvec3> places;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     places.push_back(mars::chart_direction(key.face, lines.u[mesh.vertices[v].i], lines.v[mesh.vertices[v].j]) *
@@ -139,6 +144,13 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
     at.up = glm::normalize(middle);
     if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
     at.height_m = (height_m[v[0]] + height_m[v[1]] + height_m[v[2]]) / 3.0;
+    if (values) {
+      const mars::ChartPoint place = mars::chart_on(key.face, middle);
+      at.height_m = static_cast<double>(bilinear<float>(
+          between_lines(place.u, values->key.level, values->key.i, n),
+          between_lines(place.v, values->key.level, values->key.j, n), static_cast<std::size_t>(values->side),
+          [&](std::size_t k) { return values->posts[k].height_m; }));
+    }
     at.sun = 1.0;
     if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
       at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
@@ -153,11 +165,11 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
     for (const std::uint32_t corner : v) {
       if (!may_be_nodata) break;
       // A parent's mesh is over the posts of its children.
-      const int finer = mesh.intervals / posts->posts.intervals;
-      const auto side = static_cast<std::size_t>(posts->posts.intervals) + 1;
+      const int finer = mesh.intervals / n;
+      const auto side = static_cast<std::size_t>(n) + 1;
       const auto post = [&](int of_mesh) { return static_cast<std::size_t>((of_mesh + finer / 2) / finer); };
-      corner_is_nodata = corner_is_nodata ||
-                         posts->nodata[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
+      corner_is_nodata =
+          corner_is_nodata || (*nodata)[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
     }
     out.nodata = out.nodata || corner_is_nodata;
     const glm::vec3 c(corner_is_nodata && out.nodata_image ? at.image : colour(at, params));

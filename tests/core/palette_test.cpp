@@ -343,6 +343,21 @@ TEST(Hsv, RampIsStraightInHueSaturationAndValue) {
   });
 }
 
+TEST(ColourScale, OfDifferencesIsEvenAboutZero) {
+  const ColourScale usual = scale_of("auto", Colour::kDifference);
+  EXPECT_EQ(usual.low(), -10);
+  EXPECT_EQ(usual.high(), 10);
+  EXPECT_EQ(usual.unit(), "m");
+  const ColourScale scale = scale_of("auto", Colour::kDifference, -3, 3);
+  EXPECT_GT(oklab(scale(0)).x, oklab(scale(1)).x);
+  for (const double value : {0.5, 1.0, 2.0, 3.0, 9.0}) {
+    EXPECT_NEAR(oklab(scale(value)).x, oklab(scale(-value)).x, 0.02) << value;
+    EXPECT_GT(scale(value).x, scale(value).z);    // red where it has risen
+    EXPECT_GT(scale(-value).z, scale(-value).x);  // blue where it has sunk
+  }
+  EXPECT_EQ(scale(3), scale(9));
+}
+
 TEST(Colourised, TakesHueAndSaturationAndKeepsValue) {
   rc::check([] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());

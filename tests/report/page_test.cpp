@@ -132,5 +132,21 @@ TEST(Page, IsOneFileAndEscapesText) {
   }
 }
 
+TEST(Page, ImagesAreInIt) {
+  Page page;
+  Section section;
+  // RFC 4648, section 10: "foobar", "fooba", "foob" and nothing.
+  for (const char* text : {"foobar", "fooba", "foob", ""}) {
+    const std::string bytes = text;
+    section.images.push_back({"a <" + bytes + ">", {bytes.begin(), bytes.end()}});
+  }
+  page.sections.push_back(section);
+  const std::string html = to_html(page);
+  for (const char* base64 : {"Zm9vYmFy", "Zm9vYmE=", "Zm9vYg==", ""})
+    EXPECT_NE(html.find("src=\"data:image/png;base64," + std::string(base64) + "\">"), std::string::npos)
+        << base64;
+  EXPECT_NE(html.find("<figcaption>a &lt;foobar&gt;</figcaption>"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace vpe::report

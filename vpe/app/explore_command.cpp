@@ -10,6 +10,7 @@
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/planet/latitude_option.h"
@@ -42,6 +43,7 @@ namespace {
 
 struct ExploreArguments {
   std::string planet;
+  std::string earlier;  // planet of --compare
   std::string pose;
   std::string latitude;
   std::string size;
@@ -99,11 +101,15 @@ std::string shell_line(const std::vector<std::string>& words) {
 }
 
 // Returns a command that draws the view of a session.
-std::string command_line(const std::string& planet, const vpe::explore::Session& session) {
+std::string command_line(const std::string& file, const paging::PlanetFile& planet,
+                         const vpe::explore::Session& session) {
   vpe::explore::MakeOptions options;
-  options.planet = planet;
+  options.planet = file;
   options.output = "view.png";
-  return shell_line(vpe::explore::image_words(session, options));
+  std::vector<std::string> words = vpe::explore::image_words(session, options);
+  if (session.settings().values().colour == core::Colour::kDifference && planet.earlier())
+    words.insert(words.end(), {"--compare", std::filesystem::absolute(planet.earlier()->path()).string()});
+  return shell_line(words);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -288,9 +294,10 @@ void explore(const ExploreArguments& given, const Common& common) {
   }
   window::check_display(make_setup(arguments, common, preferences, last).display);
   std::string file = recorded_path(arguments.planet);
-  auto planet = arguments.planet.empty() ? coarse_embedded_planet(common) : nullptr;
+  const bool may_be_coarse = arguments.planet.empty() && arguments.earlier.empty();
+  auto planet = may_be_coarse ? coarse_embedded_planet(common) : nullptr;
   bool is_coarse = planet != nullptr;
-  if (!is_coarse) planet = open_planet(arguments.planet, common);
+  if (!is_coarse) planet = with_earlier(open_planet(arguments.planet, common), arguments.earlier, common);
   bool is_first = true;
   ExploreArguments here = arguments;
   std::optional<core::Settings> settings;
@@ -321,7 +328,9 @@ void explore(const ExploreArguments& given, const Common& common) {
     }
     add_places(planet->meta(), setup);
     setup.greets = here.pose.empty() && here.flight.empty();
-    setup.command_line = [&file](const vpe::explore::Session& session) { return command_line(file, session); };
+    setup.command_line = [&file, planet](const vpe::explore::Session& session) {
+      return command_line(file, *planet, session);
+    };
     setup.display.title =
         "vpe - " + planet->meta().body + (planet->meta().illustration ? " (finest ground is synthetic)" : "");
     const auto keep = [&, keeps_letters = here.scale <= 0](const window::ExploreWindow& shown) {
@@ -379,6 +388,9 @@ void add_explore(CLI::App& program, Common& common) {
   command->add_option("PLANET", arguments->planet,
                       "Planet file, DEM, or project of this command, *.vpeproj (default: the embedded Mars)");
   command->add_option(
+      "--compare", arguments->earlier,
+      "Planet file or DEM: shown left of a line that the mouse drags, with PLANET on its right");
+  command->add_option(
       "--pose", arguments->pose,
       "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere "
       "(default: a view of the whole planet)");
@@ -399,6 +411,7 @@ void add_explore(CLI::App& program, Common& common) {
   add_render_options(*command, arguments->image);
   add_examples(*command,
                {{"the whole planet", "vpe explore mars.vpe"},
+                {"before and after, on both sides of a line", "vpe explore after.vpe --compare before.vpe"},
                 {"begin at a place, in ray casting, with shadows",
                  "vpe explore mars.vpe --pose -59.2,-13.7,8000,90,-10 --backend ray --set shadows=on"},
                 {"continue a project that Ctrl+S has saved in the window", "vpe explore work.vpeproj"},

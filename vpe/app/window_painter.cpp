@@ -44,10 +44,15 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
   core::DrawResult result = drawer == nullptr    ? renderer_->draw(request)
                             : eye == Eye::kRight ? drawer->draw_carried(request)
                                                  : drawer->draw_first(request);
+  return with_overlays(request, std::move(result), time_s, overlays_);
+}
+
+core::DrawResult WindowPainter::with_overlays(const core::DrawRequest& request, core::DrawResult result,
+                                              double time_s, FrameOverlays& overlays) const {
   if (!overlay::any(request.settings)) return result;
-  overlays_.load(request.settings);
+  overlays.load(request.settings);
   const FrameGround ground{result.frame.range_m, result.certificate, {}};
-  overlay::composite(overlays_.layer(request, ground, time_s), result.frame.colour);
+  overlay::composite(overlays.layer(request, ground, time_s), result.frame.colour);
   return result;
 }
 
@@ -86,13 +91,41 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
 
 namespace {
 
-// Adds the image of an eye as a grid, if it has ranges.
-void add_grid(const core::DrawRequest& request, const core::DrawResult& result, window::DrawnImage& drawn) {
+// Adds an image as a grid, if it has ranges.
+void add_grid(const core::DrawRequest& request, const core::DrawResult& result,
+              std::vector<warp::ImageGrid>& grids) {
   if (!request.want_rough_range || result.frame.range_m.empty() || result.certificate.is_below_ground) return;
-  drawn.grids.emplace_back(request.view, result.frame.range_m, window::kMovedCells);
+  grids.emplace_back(request.view, result.frame.range_m, window::kMovedCells);
+}
+
+RenderOptions with_backend(core::Backend backend) {
+  RenderOptions options;
+  options.backend = backend;
+  return options;
+}
+
+// Two planets that are compared have a half of the memory each.
+Common share_of(Common common, const paging::PlanetFile& planet) {
+  if (planet.earlier()) common.memory_mb /= 2;
+  return common;
 }
 
 }  // namespace
+
+// The earlier planet is compared with itself, so that the same settings draw it: its differences are 0.
+void WindowPainter::draw_earlier(const core::DrawRequest& request, double time_s, window::DrawnImage& drawn) {
+  if (earlier_renderer_ == nullptr) {
+    const auto earlier = planet_->earlier()->compared_with(planet_->earlier());
+    earlier_renderer_ = make_renderer(with_backend(*backend_), share_of(common_, *planet_), earlier);
+    earlier_overlays_ = std::make_unique<FrameOverlays>(earlier);
+  }
+  core::DrawResult result =
+      with_overlays(request, earlier_renderer_->draw(request), time_s, *earlier_overlays_);
+  add_grid(request, result, drawn.earlier_grids);
+  drawn.result.settled = drawn.result.settled && result.settled;
+  for (std::string& failure : result.failures) drawn.result.failures.push_back(std::move(failure));
+  drawn.earlier = {result.frame.width, result.frame.height, std::move(result.frame.colour)};
+}
 
 core::DrawRequest for_window_rays(core::DrawRequest request, bool within_tolerance) {
   core::SettingsValues& values = request.settings;
@@ -119,7 +152,7 @@ void WindowPainter::draw_pair(const window::ImageRequest& request, const core::D
   stereo.convergence_m = request.convergence_m;
   StereoImage pair = draw_stereo(stereo, draw_request, [&](const core::DrawRequest& one, Eye eye) {
     core::DrawResult result = draw(one, request.flight_time_s, eye);
-    if (eye != Eye::kMiddle) add_grid(one, result, drawn);
+    if (eye != Eye::kMiddle) add_grid(one, result, drawn.grids);
     return result;
   });
   drawn.image = std::move(pair.image);
@@ -136,10 +169,9 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   if (backend_ != backend) {
     carried_.reset();
     renderer_.reset();
+    earlier_renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
-    RenderOptions options;
-    options.backend = backend;
-    renderer_ = make_renderer(options, common_, planet_);
+    renderer_ = make_renderer(with_backend(backend), share_of(common_, *planet_), planet_);
     backend_ = backend;
   }
   core::DrawRequest draw_request = std::move(as_asked.draw);
@@ -160,8 +192,9 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   draw_request.view = core::with_margin(draw_request.view, request.margin_px);
   drawn.result = draw(draw_request, request.flight_time_s);
   drawn.result.settled = drawn.result.settled && !has_other_palette;
+  if (request.with_earlier && planet_->earlier()) draw_earlier(draw_request, request.flight_time_s, drawn);
   core::Frame& frame = drawn.result.frame;
-  add_grid(draw_request, drawn.result, drawn);
+  add_grid(draw_request, drawn.result, drawn.grids);
   if (request.keeps_ranges && !drawn.grids.empty()) drawn.range_m = std::move(frame.range_m);
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};

@@ -22,7 +22,8 @@ core::DrawRequest for_window_rays(core::DrawRequest request, bool within_toleran
 // have the mode of for_window_rays(). Pure.
 window::ImageRequest as_drawn(window::ImageRequest request);
 
-// Draws the window's image requests. Holds one backend at a time to keep within --memory: after a change of the
+// Draws the window's image requests. Holds one backend at a time to keep within --memory, and gives each of two planets
+// that are compared a half of it: after a change of the
 // backend, of exaggeration or of the kind of shading, no loaded tile fits, and the first image waits for its tiles for
 // `change_s` at most, so that the window shows the former image until then. One thread at a time.
 class WindowPainter : public window::Painter {
@@ -35,6 +36,9 @@ class WindowPainter : public window::Painter {
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s, Eye eye = Eye::kMiddle);
+  core::DrawResult with_overlays(const core::DrawRequest& request, core::DrawResult result, double time_s,
+                                 FrameOverlays& overlays) const;
+  void draw_earlier(const core::DrawRequest& request, double time_s, window::DrawnImage& drawn);
   // Returns what carries second eyes, or null if they are drawn in full.
   CarriedDrawer* drawer_for(const core::DrawRequest& request, Eye eye);
   void draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
@@ -47,6 +51,9 @@ class WindowPainter : public window::Painter {
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
+  // Of the planet that this one is compared with, once it is needed.
+  std::unique_ptr<core::Renderer> earlier_renderer_;
+  std::unique_ptr<FrameOverlays> earlier_overlays_;
   StereoMethod stereo_;
   std::unique_ptr<CarriedDrawer> carried_;  // of renderer_, once it is needed
 

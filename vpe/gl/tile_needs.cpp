@@ -59,7 +59,8 @@ bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, co
   if (!is_textured(tile, planet, material)) return false;
   // Programs compute texture coordinates of coarse tiles from positions (TileFeatures::placed): texels are
   // wide.
-  return (material.method != PaintMethod::kPalette && !material.shading.flat) || planet.has_nodata(tile);
+  return (material.method != PaintMethod::kPalette && !material.shading.flat) || planet.has_nodata(tile) ||
+         paging::shows_difference(material.shading);  // the other planet may have nodata
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,

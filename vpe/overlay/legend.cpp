@@ -1,4 +1,4 @@
-// Legend of the colours of elevation, slope or aspect.
+// Legend of the colours of elevation, slope, aspect or difference.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,8 +20,13 @@ bool shows_values(const Scene& scene) {
   const bool coloured = a.mode == Mode::kUnlit || a.mode == Mode::kColoured || a.mode == Mode::kWireframe ||
                         a.mode == Mode::kMarkers ||
                         (a.mode == Mode::kTextured && (a.colourise || !scene.has_imagery));
-  return coloured &&
-         (a.colour == Colour::kElevation || a.colour == Colour::kSlope || a.colour == Colour::kAspect);
+  return coloured && (a.colour == Colour::kElevation || a.colour == Colour::kSlope ||
+                      a.colour == Colour::kAspect || a.colour == Colour::kDifference);
+}
+
+// Returns what follows the numbers.
+const char* unit_sign(Colour colour) {
+  return colour == Colour::kElevation || colour == Colour::kDifference ? "" : "\u00b0";
 }
 
 constexpr const char* kElevationInKm = "Elevation, km";
@@ -52,14 +57,14 @@ LegendScale legend_scale(Colour colour, double low, double high) {
   const bool in_km =
       colour == Colour::kElevation && std::max(std::abs(low), std::abs(high)) >= kKilometresFrom_m;
   const double unit = in_km ? 1000 : 1;
-  legend.title = colour == Colour::kElevation ? in_km ? kElevationInKm : "Elevation, m"
-                 : colour == Colour::kSlope   ? "Slope"
-                                              : "Aspect";
+  legend.title = colour == Colour::kElevation    ? in_km ? kElevationInKm : "Elevation, m"
+                 : colour == Colour::kDifference ? "Difference, m"
+                 : colour == Colour::kSlope      ? "Slope"
+                                                 : "Aspect";
   const std::vector<double> values = base::nice_ticks_two_or_more(bottom / unit, top / unit, kTicks);
   const int decimals = values.size() > 1 ? base::step_decimals(values[1] - values[0]) : 0;
   for (const double v : values) {
-    legend.ticks.push_back(
-        {v * unit, number_text(v, decimals) + (colour == Colour::kElevation ? "" : "\u00b0")});
+    legend.ticks.push_back({v * unit, number_text(v, decimals) + unit_sign(colour)});
   }
   return legend;
 }
@@ -74,8 +79,7 @@ void label_ends(LegendScale& legend, Colour colour, double low, double high) {
   const int decimals = base::step_decimals(base::nice_step_below(span / kDigits / unit));
   for (const double end : {low, high}) {
     std::erase_if(legend.ticks, [&](const Tick& tick) { return std::abs(tick.value - end) < kApart * span; });
-    legend.ticks.push_back(
-        {end, number_text(end / unit, decimals) + (colour == Colour::kElevation ? "" : "\u00b0")});
+    legend.ticks.push_back({end, number_text(end / unit, decimals) + unit_sign(colour)});
   }
 }
 

@@ -1,5 +1,8 @@
 #include "vpe/report/page.h"
 
+#include <algorithm>
+#include <span>
+
 #include "vpe/base/number.h"
 
 namespace vpe::report {
@@ -13,6 +16,8 @@ h1, h2 { font-weight: 600; line-height: 1.2; }
 h2 { border-top: 1px solid var(--line); padding-top: 1rem; margin-top: 2.5rem; }
 p { max-width: 46rem; }
 figure { display: inline-block; margin: .5rem 1rem .5rem 0; }
+figure img { display: block; max-width: 100%; height: auto; }
+figcaption { color: var(--quiet); font-size: 13px; }
 svg text { fill: currentColor; font: 12px system-ui, sans-serif; }
 div.table { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }
@@ -57,6 +62,26 @@ void add_paragraphs(std::string& html, const std::vector<std::string>& paragraph
   for (const std::string& paragraph : paragraphs) html += "<p>" + escape_markup(paragraph) + "</p>\n";
 }
 
+// RFC 4648, section 4.
+std::string to_base64(std::span<const std::uint8_t> bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t n = 0; n < bytes.size(); n += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - n);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[n + k] : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+void add_image(std::string& html, const PageImage& image) {
+  const std::string caption = escape_markup(image.caption);
+  html += "<figure><img alt=\"" + caption + "\" src=\"data:image/png;base64," + to_base64(image.png) +
+          "\"><figcaption>" + caption + "</figcaption></figure>\n";
+}
+
 }  // namespace
 
 std::string escape_markup(const std::string& text) {
@@ -86,6 +111,7 @@ std::string to_html(const Page& page) {
     add_paragraphs(html, section.paragraphs);
     for (const Plot& plot : section.plots) html += "<figure>" + to_svg(plot) + "</figure>\n";
     for (const Table& table : section.tables) add_table(html, table);
+    for (const PageImage& image : section.images) add_image(html, image);
   }
   return html + "</body></html>\n";
 }

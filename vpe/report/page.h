@@ -1,6 +1,7 @@
 // A report as one HTML file that needs no other file.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,18 @@
 
 namespace vpe::report {
 
+// Holds an image that a page shows in itself.
+struct PageImage {
+  std::string caption;
+  std::vector<std::uint8_t> png;  // the bytes of a PNG file
+};
+
 struct Section {
   std::string heading;
   std::vector<std::string> paragraphs;  // plain text
   std::vector<Plot> plots;
   std::vector<Table> tables;
+  std::vector<PageImage> images = {};
 };
 
 struct Page {
@@ -22,7 +30,7 @@ struct Page {
   std::vector<Section> sections;
 };
 
-// Returns HTML 5 in light and dark colours, without scripts and without external resources. Escapes all text.
+// Returns HTML 5 in light and dark colours, without scripts and without external resources: images are in it as base64. Escapes all text.
 std::string to_html(const Page& page);
 
 // Escapes "&", "<", ">" and quotes for HTML and XML.

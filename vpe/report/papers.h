@@ -2,6 +2,12 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vpe/report/interleaved_timing.h"
+#include "vpe/report/table.h"
 
 namespace vpe::report {
 
@@ -28,5 +34,29 @@ struct PublishedReprojection {
   double incoherent_casting = 4;         // time of casting without coherent starts, over that with them
 };
 inline constexpr PublishedReprojection kWan2000Figure8;
+
+// Holds a published table with one time for each size of something.
+struct PublishedTimes {
+  std::string paper;
+  std::string machine;       // and settings
+  std::string size_name;     // a column's name with the unit at the end, such as "map_posts"
+  std::string size_meaning;  // what the sizes are of
+  struct Row {
+    double size = 0;
+    double time_s = 0;
+    std::string picture;  // file in the paper; empty: none
+  };
+  std::vector<Row> rows;  // in the order of the paper
+  double base_size = 0;   // of the row whose time the ratios divide by
+};
+
+// Returns the table of Vyatkin and Dolgovesov (2002): time against the resolution of the height map.
+const PublishedTimes& vyatkin_2002_times();
+
+// Returns a row for each published one: size, published time and its ratio to that of the base size; the median, least
+// and largest of `timings`, their ratio to the base size (the median of the rounds' ratios, with the least and the
+// largest), and the ratio here over the published ratio. Name and caption of the table are empty. Throws std::invalid_argument if there is not one timing for each
+// row, if a timing has no rounds or not as many as the others, or no row has the base size.
+Table compare_times(const PublishedTimes& published, std::span<const Timing> timings);
 
 }  // namespace vpe::report

@@ -71,11 +71,25 @@ Reply set_bookmark(const explore::Session& session, const fs::path& file, int nu
 
 }  // namespace
 
+// Returns what is wrong, or "".
+std::string ExploreWindow::swipe(explore::ActionKind kind) {
+  if (setup_.planet == nullptr || !setup_.planet->earlier())
+    return "there is no earlier planet: 'vpe explore PLANET --compare EARLIER' shows both";
+  if (chooser_.choice().stereo) return "the line parts one image; leave stereo in the panel View first";
+  if (kind == Kind::kSwipe)
+    swipe_.set_on(!swipe_.is_on());
+  else
+    swipe_.move_by(kind == Kind::kSwipeLeft ? -SwipeLine::kStep : SwipeLine::kStep);
+  frames_due_ = kFramesAfterChange;
+  return {};
+}
+
 void ExploreWindow::save_image() {
   saves_image_ = false;
   const fs::path file = new_file(setup_.folder, "", ".png");
+  const core::RgbImage shown = swiped_image();
   try {
-    core::write_image(file.string(), last_image_.pixels, last_image_.width, last_image_.height);
+    core::write_image(file.string(), shown.pixels, shown.width, shown.height);
     show_message("image: " + file.string());
   } catch (const std::exception& e) {
     show_message(e.what(), true);
@@ -198,6 +212,9 @@ std::string ExploreWindow::act(const explore::Action& action) {
       if (!display_.has_caught_cursor()) return catch_cursor();
       let_cursor_go();
       return {};
+    case Kind::kSwipe:
+    case Kind::kSwipeLeft:
+    case Kind::kSwipeRight: return swipe(action.kind);
     case Kind::kPlayPause: {
       const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
       return session_.follow(flight == nullptr || !flight->is_playing());

@@ -39,7 +39,7 @@ void ExploreWindow::handle(const Event& event) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
-  if (handle_panel_keys(event) || handle_marks(event)) return;
+  if (handle_panel_keys(event) || handle_swipe(event) || handle_marks(event)) return;
   switch (event.kind) {
     case Event::Kind::kKeyPress:
     case Event::Kind::kKeyRepeat:
@@ -57,6 +57,24 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kFocusLost:
     case Event::Kind::kDrop: break;  // handled above
   }
+}
+
+// Returns true if the event belongs to the line between two planets.
+bool ExploreWindow::handle_swipe(const Event& event) {
+  const ViewArea area = image_layout().image_area();
+  bool is_taken = false;
+  switch (event.kind) {
+    case Event::Kind::kPress:
+      is_taken = swipes() && !state_.large_map && !ImGui::GetIO().WantCaptureMouse &&
+                 event.code == GLFW_MOUSE_BUTTON_LEFT && swipe_.press(area, cursor_, display_.scale());
+      break;
+    case Event::Kind::kMove: is_taken = swipe_.drag(area, cursor_); break;
+    case Event::Kind::kRelease: is_taken = swipe_.release(); break;
+    case Event::Kind::kFocusLost: swipe_.release(); break;
+    default: break;
+  }
+  if (is_taken) frames_due_ = std::max(frames_due_, 1);
+  return is_taken;
 }
 
 // Returns true if the event was a key that leads from panel to panel.

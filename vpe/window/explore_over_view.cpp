@@ -137,6 +137,13 @@ glm::dvec2 ExploreWindow::draw_modes(const ViewArea& area) {
     if (const std::string error = catch_cursor(); !error.empty()) show_message(error, true);
   }
   ImGui::EndDisabled();
+  if (setup_.planet->earlier() != nullptr) {
+    ImGui::SameLine();
+    bool is_on = swipe_.is_on();
+    if (widgets_.toggle("swipe", is_on, "B: a line with the earlier planet on its left; [ and ] move it")) {
+      if (const std::string error = swipe(explore::ActionKind::kSwipe); !error.empty()) show_message(error);
+    }
+  }
   const ImVec2 size = ImGui::GetWindowSize();
   ImGui::End();
   ImGui::PopStyleVar(2);

@@ -48,9 +48,10 @@ void ExploreWindow::request_image() {
   const std::string objects = scene.empty() ? ""
                                             : " " + scene + " " + std::to_string(objects_.shown_revision()) +
                                                   " " + base::format_number(objects_.time_s());
-  const std::string state =
-      std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects;
+  const std::string state = std::string(core::to_string(chosen.drawn_by)) +
+                            (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
+                            base::format_number(chosen.eye_base_m) + " " +
+                            base::format_number(chosen.convergence_m) + objects + (swipes() ? " swipe" : "");
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
@@ -72,7 +73,9 @@ void ExploreWindow::request_image() {
   // In red-cyan the images of both eyes are one.
   request.draw.want_rough_range =
       setup_.preferences.warp != explore::Warp::kOff && chosen.stereo != core::StereoLayout::kAnaglyph;
-  request.keeps_ranges = setup_.preferences.warp == explore::Warp::kCarry && !chosen.stereo;
+  request.with_earlier = swipes();
+  request.keeps_ranges =
+      setup_.preferences.warp == explore::Warp::kCarry && !chosen.stereo && !request.with_earlier;
   const double soon_s = std::clamp(2 * (drawn_ ? drawn_->seconds : 0), kSoonest_s, kLatest_s);
   const std::vector<core::View> soon = foreseen_views(next->view, soon_s, request.draw.paging.upcoming);
   request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
@@ -149,6 +152,7 @@ bool ExploreWindow::take_image() {
     show_message(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
   view_texture_.upload(drawn->image);
+  if (!drawn->earlier.pixels.empty()) earlier_texture_.upload(drawn->earlier);
   const glm::ivec2 margin_px = drawn->request.margin_px;
   finer_.begin();  // not before: it would delay the first image
   ++images_;
@@ -157,6 +161,8 @@ bool ExploreWindow::take_image() {
     moved_image_.take(
         {drawn->image.width, drawn->image.height, drawn->image.pixels, std::move(drawn->range_m)});
   last_image_ = core::without_margin(std::move(drawn->image), margin_px);
+  if (!drawn->earlier.pixels.empty())
+    drawn->earlier = core::without_margin(std::move(drawn->earlier), margin_px);
   drawn_ = std::move(*drawn);
   image_times_s_.push_back(drawn_->seconds);
   if (image_times_s_.size() > 20) image_times_s_.pop_front();
@@ -241,13 +247,17 @@ void ExploreWindow::draw_view() {
   if (!drawn_) return;
   const ViewArea area =
       drawn_->request.stereo == chooser_.choice().stereo ? image_layout().image_area() : view_area_;
-  if (lags()) {
-    draw_moved(list);
+  if (swipes() && !drawn_->earlier.pixels.empty()) {
+    const double x = std::round(swipe_.x_px(area));
+    const double bottom = area.y + area.height;
+    list.PushClipRect(at(area.x, area.y), at(x, bottom), true);
+    draw_image(list, area, earlier_texture_, drawn_->earlier_grids);
+    list.PopClipRect();
+    list.PushClipRect(at(x, area.y), at(area.x + area.width, bottom), true);
+    draw_image(list, area, view_texture_, drawn_->grids);
+    list.PopClipRect();
   } else {
-    const glm::dvec2 edge =
-        glm::dvec2(drawn_->request.margin_px) / glm::dvec2(view_texture_.width(), view_texture_.height());
-    list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height),
-                  at(edge.x, edge.y), at(1 - edge.x, 1 - edge.y));
+    draw_image(list, area, view_texture_, drawn_->grids);
   }
   shown_view_ = lags() ? session_.view() : drawn_->request.draw.view;
   // Images of the terrain come first: few frames are shown between quick ones.
@@ -261,20 +271,49 @@ void ExploreWindow::draw_view() {
     draw_marks(list, eye);
     list.PopClipRect();
   }
+  if (swipes()) swipe_.draw(list, area, display_.scale());
+}
+
+// Returns true if the view has the line between the earlier planet and this one.
+bool ExploreWindow::swipes() const {
+  return swipe_.is_on() && !chooser_.choice().stereo && guide_.inside() == nullptr &&
+         setup_.planet->earlier() != nullptr;
+}
+
+// Returns the last image as the line shows it.
+core::RgbImage ExploreWindow::swiped_image() const {
+  core::RgbImage image = last_image_;
+  if (!swipes() || !drawn_ || drawn_->earlier.pixels.size() != image.pixels.size()) return image;
+  const auto width = static_cast<std::size_t>(image.width);
+  const auto left = static_cast<std::size_t>(std::lround(swipe_.share() * image.width));
+  for (std::size_t row = 0; row < image.pixels.size(); row += width) {
+    for (std::size_t x = 0; x < left; ++x) image.pixels[row + x] = drawn_->earlier.pixels[row + x];
+  }
+  return image;
+}
+
+// Draws an image of the last request, or what the camera sees of it now.
+void ExploreWindow::draw_image(ImDrawList& list, const ViewArea& area, const Texture& texture,
+                               const std::vector<warp::ImageGrid>& grids) {
+  if (lags() && !grids.empty()) return draw_moved(list, texture, grids);
+  const glm::dvec2 edge = glm::dvec2(drawn_->request.margin_px) / glm::dvec2(texture.width(), texture.height());
+  list.AddImage(texture.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height),
+                at(edge.x, edge.y), at(1 - edge.x, 1 - edge.y));
 }
 
 // Draws the last image of each eye as that eye sees it now.
-void ExploreWindow::draw_moved(ImDrawList& list) {
+void ExploreWindow::draw_moved(ImDrawList& list, const Texture& texture,
+                               const std::vector<warp::ImageGrid>& grids) {
   const ImageLayout layout = image_layout();
   const glm::ivec2 counts = layout.counts();
   const glm::vec2 size = 1.0F / glm::vec2(counts);
-  for (int n = 0; n < std::min(layout.eyes(), static_cast<int>(drawn_->grids.size())); ++n) {
+  for (int n = 0; n < std::min(layout.eyes(), static_cast<int>(grids.size())); ++n) {
     const glm::ivec2 place(n % counts.x, n / counts.x);
-    moved_image_.draw(list, {view_texture_.id(), glm::vec2(place) * size, size}, layout.eye_area(n),
-                      drawn_->grids[static_cast<std::size_t>(n)], eye_image(n).view, setup_.preferences.warp);
+    moved_image_.draw(list, {texture.id(), glm::vec2(place) * size, size}, layout.eye_area(n),
+                      grids[static_cast<std::size_t>(n)], eye_image(n).view, setup_.preferences.warp);
   }
-  if (setup_.preferences.warp == explore::Warp::kCarry && layout.eyes() == 1)
-    moved_image_.draw_carried(list, layout.image_area(), drawn_->grids.front().view(),
+  if (setup_.preferences.warp == explore::Warp::kCarry && layout.eyes() == 1 && !swipes())
+    moved_image_.draw_carried(list, layout.image_area(), grids.front().view(),
                               sized(session_.view(), last_image_), session_.height_m());
 }
 

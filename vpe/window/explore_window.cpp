@@ -60,6 +60,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       begun_(Clock::now()),
       last_step_(begun_),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
+  swipe_.set_on(setup_.planet != nullptr && setup_.planet->earlier() != nullptr);
   state_.drawn_by = setup_.drawn_by;
   state_.panels = setup_.panels;
   state_.side_px = setup_.side_px;

@@ -43,6 +43,7 @@
 #include "vpe/window/panels/status_line.h"
 #include "vpe/window/panels/welcome.h"
 #include "vpe/window/session_recorder.h"
+#include "vpe/window/swipe_line.h"
 #include "vpe/window/ui/display.h"
 #include "vpe/window/ui/imgui_helpers.h"
 #include "vpe/window/ui/panel_focus.h"
@@ -185,6 +186,8 @@ class ExploreWindow {
   // Returns the image shown last, or null before the first, and its pixels.
   const DrawnImage* drawn() const { return drawn_ ? &*drawn_ : nullptr; }
   const core::RgbImage& image() const { return last_image_; }
+  // Returns the line between the earlier planet and this one.
+  const SwipeLine& swipe_line() const { return swipe_; }
   // Returns the view that the last frame shows, by its image or by one that follows the camera, or null before the first.
   const core::View* shown_view() const { return shown_view_ ? &*shown_view_ : nullptr; }
   // Returns true if nothing moves, loads or waits to be drawn.
@@ -227,6 +230,8 @@ class ExploreWindow {
   // explore_input.cpp:
   void handle_button(const Event& event);
   void scroll(glm::dvec2 xy, double notches);
+  bool handle_swipe(const Event& event);
+  std::string swipe(explore::ActionKind kind);
   bool handle_caught(const Event& event);
   void add_speed(double notches);
   std::string catch_cursor();  // returns what is wrong, or ""
@@ -242,7 +247,11 @@ class ExploreWindow {
   bool step_overlook(const DeviceReading& input, double dt_s);
   void leave_overlook();
   void draw_view();
-  void draw_moved(ImDrawList& list);
+  bool swipes() const;
+  core::RgbImage swiped_image() const;
+  void draw_image(ImDrawList& list, const ViewArea& area, const Texture& texture,
+                  const std::vector<warp::ImageGrid>& grids);
+  void draw_moved(ImDrawList& list, const Texture& texture, const std::vector<warp::ImageGrid>& grids);
   void draw_marks(ImDrawList& list, const EyeImage& eye);
   void draw_side();
   void draw_tabs();
@@ -338,6 +347,8 @@ class ExploreWindow {
   std::optional<mars::LonLat> under_cursor_;  // in view or map
   std::string cursor_text_;                   // of the place that was under it last
   Texture view_texture_;
+  Texture earlier_texture_;  // of the earlier planet, while the line is on
+  SwipeLine swipe_;
   MovedImage moved_image_;
   std::optional<core::View> shown_view_;  // that the last frame showed
   double next_moved_s_ = 0;               // not before, while the image follows the camera

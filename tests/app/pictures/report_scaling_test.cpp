@@ -42,7 +42,16 @@ class Report : public AppTest {
     std::size_t plots = 0;
     for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) ++plots;
     EXPECT_GE(plots, least_plots);
-    for (const char* outside : {"<script", "src=", "href="}) EXPECT_EQ(html.find(outside), std::string::npos);
+    expect_one_file(html);
+  }
+
+  // Nothing comes from another file: pictures are in the page.
+  static void expect_one_file(std::string html) {
+    const std::string inside = " src=\"data:image/png;base64,";
+    for (std::size_t at = html.find(inside); at != std::string::npos; at = html.find(inside, at))
+      html.erase(at, inside.size());
+    for (const char* outside : {"<script", "src=", "href=", "@import", "url("})
+      EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   }
 
   static json row(const json& table, const json& wanted) {
@@ -213,6 +222,35 @@ TEST_F(Report, PapersPutBothSideBySide) {
   EXPECT_NEAR(difference["published"].get<double>(), 0.031, 1e-9);
   EXPECT_LT(difference["lit"].get<double>(), 0.031);
   EXPECT_GT(difference["lit"].get<double>(), 0);
+
+  const std::vector<std::pair<int, int>> published{{1024, 59}, {512, 58}, {128, 58}, {64, 57}};
+  for (const char* name : {"relief-bilinear", "relief-bilinear-half-pixel"}) {
+    const json& table = report[name];
+    expect_csv("out/" + std::string(name) + ".csv", table);
+    ASSERT_EQ(table["rows"].size(), published.size()) << name;
+    for (std::size_t n = 0; n < published.size(); ++n) {
+      const json& one = table["rows"][n];
+      EXPECT_EQ(one["map_posts"], published[n].first);
+      EXPECT_EQ(one["published_s"], published[n].second);
+      EXPECT_NEAR(one["published_ratio"].get<double>(), published[n].second / 57.0, 1e-12);
+      for (const char* column : {"here_least_s", "here_s", "here_ratio", "ratio_of_ratios"})
+        EXPECT_GT(one[column].get<double>(), 0) << name << " " << column;
+      EXPECT_LE(one["here_ratio_least"].get<double>(), one["here_ratio"].get<double>());
+      EXPECT_GE(one["here_ratio_most"].get<double>(), one["here_ratio"].get<double>());
+    }
+  }
+  EXPECT_EQ(report["relief-bilinear"]["rows"][1]["published_picture"], "t512.tga");
+  EXPECT_FALSE(report.contains("relief-bicubic"));
+  for (const char* picture : {"figure-6", "figure-7", "figure-8", "t1024", "t512", "t128", "t64"}) {
+    const vpe::core::RgbImage image =
+        vpe::core::read_image(dir_ / "out" / ("relief-" + std::string(picture) + ".png"));
+    EXPECT_EQ(image.width, 512) << picture;
+    EXPECT_EQ(image.height, 512) << picture;
+    // Ground and sky.
+    const auto sky = std::ranges::count(image.pixels, vpe::base::Rgb{200, 215, 235});
+    EXPECT_GT(sky, 20000) << picture;
+    EXPECT_LT(sky, 150000) << picture;
+  }
   expect_failure({"report", "papers", planet().string(), "-o", "out", "--size", "9"}, 2, {"9"});
   expect_failure({"report", "papers", planet().string(), "-o", "out", "--eye-base", "0"}, 2, {"--eye-base"});
 }
@@ -234,8 +272,7 @@ TEST_F(LongReport, AllInOneFolder) {
   for (const char* heading : {"Error against time: All views", "How costs grow: Exponents",
                               "Cost of features that a scene can do without: Costs"})
     EXPECT_NE(page.find(heading), std::string::npos) << heading;
-  for (const char* outside : {"<script", "src=", "href=", "@import", "url("})
-    EXPECT_EQ(page.find(outside), std::string::npos);
+  expect_one_file(page);
   // Peaks are those of the processes, not of the one that started them.
   const json features = parse_json(read_text(dir_ / "all/features.json"));
   for (const json& one : features["features"]["rows"]) {

@@ -96,9 +96,10 @@ void write_manifest(const fs::path& path, const ManifestHead& head, const json& 
       {"size", std::to_string(head.width) + "x" + std::to_string(head.height)},
       {"complete", std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_done(); })}};
   for (const FilmPalette& palette : head.palettes) {
-    const char* value = palette.colour == core::Colour::kSlope    ? "slope"
-                        : palette.colour == core::Colour::kAspect ? "aspect"
-                                                                  : "elevation";
+    const char* value = palette.colour == core::Colour::kSlope        ? "slope"
+                        : palette.colour == core::Colour::kAspect     ? "aspect"
+                        : palette.colour == core::Colour::kDifference ? "difference"
+                                                                      : "elevation";
     top["palette"][value] = {{"low", palette.ends.low}, {"high", palette.ends.high}};
   }
   if (!head.frames.empty()) top["selected"] = head.frames;

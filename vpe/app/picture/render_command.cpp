@@ -17,6 +17,7 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/carried_drawer.h"
+#include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
@@ -258,7 +259,8 @@ void render(RenderArguments& arguments, const Common& common) {
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
-  const auto planet = open_planet(arguments.planet, common);
+  const auto planet = with_earlier(open_planet(arguments.planet, common), arguments.earlier, common);
+  require_earlier(parsed.settings.values(), *planet);
   note_illustration(planet->meta(), common.quiet);
   require_known_sun(parsed.settings.values(), planet->meta().body);
   const auto convert = [&](mars::Pose& pose, bool quiet) {
@@ -274,6 +276,12 @@ void render(RenderArguments& arguments, const Common& common) {
                              ", and " + planet->path() + " has " + planet->meta().identity +
                              "; name that planet file");
   }
+  const std::string& earlier = arguments.earlier_of_recipe;
+  if (!earlier.empty() && earlier != planet->earlier()->meta().identity) {
+    throw std::runtime_error(arguments.from_image + ": was compared with a planet of identity " + earlier +
+                             ", and " + planet->earlier()->path() + " has " +
+                             planet->earlier()->meta().identity + "; name that planet file with --compare");
+  }
   auto [pose, request] = resolve_view(parsed, planet);
   core::Settings settings = parsed.settings;
   if (!common.quiet) print_sun(sun_statement(request.settings, place_below(request)));
@@ -287,7 +295,7 @@ void render(RenderArguments& arguments, const Common& common) {
   if (arguments.stereo.method.carries()) rest.memory_mb -= carrying_memory_mb(common.memory_mb);
   const auto renderer = renderer_for(arguments, rest, planet, settings, request, is_backend_named,
                                      arguments.explain_lod.empty() ? nullptr : &explained);
-  RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
+  RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, *planet);
   recipe.palette = take_palette_of_view(request, planet, common);
   // Finishes the image of one camera.
   const auto finish = [&](const core::DrawRequest& one, core::DrawResult result) {
@@ -363,6 +371,7 @@ void add_render(CLI::App& program, Common& common) {
   add_stereo_options(*command, arguments->stereo);
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
+  add_compare_option(*command, arguments->earlier);
   add_render_options(*command, arguments->image);
   add_examples(
       *command,
@@ -374,6 +383,8 @@ void add_render(CLI::App& program, Common& common) {
         "vpe render mars.vpe --pose -59.2,-13.7,5000 --sun 2026-11-20T12:00Z -o view.png --range view.tif --certificate view.json"},
        {"a pair for red-cyan glasses, the right eye carried from the left one",
         "vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 --stereo anaglyph --stereo-method reproject -o pair.png"},
+       {"what has changed since, from 2 km above the ground",
+        "vpe render after.vpe --compare before.vpe --pose 137.4,-4.6,0,0,-30,0 --height 2000 -o change.png"},
        {"the same image again", "vpe render mars.vpe --from-image view.png -o same.png"}});
   command->callback([arguments, &common] { render(*arguments, common); });
 }

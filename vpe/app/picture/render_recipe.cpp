@@ -41,6 +41,7 @@ ordered_json recipe_json(const RenderRecipe& r) {
   if (!r.stereo.layout.empty()) out["stereo"] = eyes_json(r.stereo);
   if (r.allow_underground) out["allow_underground"] = true;
   if (r.palette) out["palette"] = palette_json(r.palette);
+  if (!r.earlier.empty()) out["earlier"] = r.earlier;
   return out;
 }
 
@@ -71,6 +72,7 @@ RenderRecipe recipe_from(const nlohmann::json& top) {
       r.stereo.method = {"reproject", stereo["reproject_gap_px"].get<double>()};
   }
   r.allow_underground = from.value("allow_underground", false);
+  r.earlier = from.value("earlier", std::string());
   return r;
 }
 

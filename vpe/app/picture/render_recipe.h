@@ -30,8 +30,9 @@ struct RenderRecipe {
   StereoArguments stereo;
   bool allow_underground = false;
   std::optional<core::PaletteEnds>
-      palette;         // those taken from the view; for readers, since they follow from the rest
-  std::string planet;  // PlanetMeta::identity
+      palette;          // those taken from the view; for readers, since they follow from the rest
+  std::string planet;   // PlanetMeta::identity
+  std::string earlier;  // the same of the planet that it was compared with; empty: none
 };
 
 // Returns an object with low and high, or null.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vpe/app/cli/output.h"
+#include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/frame_overlays.h"
 
 namespace vpe::app {
@@ -43,6 +44,7 @@ std::string take_recipe(RenderArguments& arguments, const Common& common) {
   if (arguments.from_image.empty()) {
     if (!arguments.pose)
       throw UsageError("--pose is required (or --from-image IMAGE); see 'vpe render --help'");
+    show_differences(arguments.earlier, arguments.image);
     return {};
   }
   for (const std::string& word : common.words) {
@@ -68,6 +70,11 @@ std::string take_recipe(RenderArguments& arguments, const Common& common) {
   arguments.stereo.map = asked.map;
   arguments.stereo.differences = asked.differences;
   arguments.allow_underground = recipe.allow_underground;
+  arguments.earlier_of_recipe = recipe.earlier;
+  if (!recipe.earlier.empty() && arguments.earlier.empty()) {
+    throw UsageError(arguments.from_image + ": shows differences from the planet of identity " +
+                     recipe.earlier + "; name it with --compare");
+  }
   return recipe.planet;
 }
 
@@ -124,7 +131,7 @@ ResolvedView resolve_view(const ParsedRender& parsed, const std::shared_ptr<cons
 }
 
 RenderRecipe recipe_of(const RenderArguments& arguments, const core::Settings& settings, const mars::Pose& pose,
-                       const ParsedRender& parsed, const paging::PlanetMeta& planet) {
+                       const ParsedRender& parsed, const paging::PlanetFile& planet) {
   RenderRecipe recipe;
   recipe.pose = pose;
   recipe.cull_pose = parsed.cull_pose;
@@ -136,7 +143,8 @@ RenderRecipe recipe_of(const RenderArguments& arguments, const core::Settings& s
   recipe.interest = arguments.image.interest;
   recipe.stereo = arguments.stereo;
   recipe.allow_underground = arguments.allow_underground;
-  recipe.planet = planet.identity;
+  recipe.planet = planet.meta().identity;
+  if (planet.earlier()) recipe.earlier = planet.earlier()->meta().identity;
   return recipe;
 }
 

@@ -21,7 +21,9 @@ struct RenderArguments {
   std::string from_image;           // image whose recipe replaces the options of the view
   std::optional<double> height_m;
   std::optional<std::string> cull_from;
-  std::string latitude;  // latitude_option.h
+  std::string latitude;           // latitude_option.h
+  std::string earlier;            // planet of --compare
+  std::string earlier_of_recipe;  // identity of the one that from_image was compared with
   std::string output;
   std::string range;
   std::string certificate;
@@ -62,6 +64,6 @@ ResolvedView resolve_view(const ParsedRender& parsed, const std::shared_ptr<cons
 // Returns the recipe of the image. The backend of the arguments is the one that draws, and the settings are those
 // that it is given.
 RenderRecipe recipe_of(const RenderArguments& arguments, const core::Settings& settings, const mars::Pose& pose,
-                       const ParsedRender& parsed, const paging::PlanetMeta& planet);
+                       const ParsedRender& parsed, const paging::PlanetFile& planet);
 
 }  // namespace vpe::app

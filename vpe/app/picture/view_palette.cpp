@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <stdexcept>
 
 #include "paging/shading/terrain_shader.h"
+#include "paging/surface/height_difference.h"
+#include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/base/nice_ticks.h"
 #include "vpe/base/number.h"
@@ -44,7 +47,8 @@ core::SettingsValues sample_settings(const core::SettingsValues& shown) {
 
 bool needs_view_palette(const core::SettingsValues& settings, const paging::PlanetFile& planet) {
   const bool is_value = settings.colour == core::Colour::kElevation ||
-                        settings.colour == core::Colour::kSlope || settings.colour == core::Colour::kAspect;
+                        settings.colour == core::Colour::kSlope || settings.colour == core::Colour::kAspect ||
+                        settings.colour == core::Colour::kDifference;
   return core::has_auto_ends(settings) && is_value &&
          (settings.legend || paging::needs_scale(settings, planet.meta().finest_image_level >= 0));
 }
@@ -77,6 +81,71 @@ std::optional<core::PaletteEnds> palette_ends(std::vector<double>& values) {
   return ends;
 }
 
+// Values of the tiles that pixels fall into, with posts about as far apart as the pixels.
+class ViewPalette::Differences {
+ public:
+  Differences(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+      : later_(planet, budget_bytes / 2), earlier_(planet->earlier(), budget_bytes / 2) {}
+
+  // Returns the difference at the post nearest to a direction, or nullopt where it has no data.
+  std::optional<double> at(const glm::dvec3& direction, double footprint_m) {
+    const paging::PlanetFile& planet = later_.planet();
+    const int intervals = planet.meta().tile.intervals();
+    const mars::ChartPoint place = mars::chart_point(direction);
+    const double root_m = lod::nominal_side_m(0, planet.radius_m()) / intervals;
+    const int level = static_cast<int>(std::ceil(std::log2(root_m / footprint_m)));
+    const lod::TileKey key =
+        planet.tree().deepest(lod::tile_at(place, std::clamp(level, 0, lod::kMaxLevel))).key;
+    const Tile& tile = tiles_.try_emplace(lod::pack(key)).first->second;
+    if (tile.lines.u.empty()) fill(key, intervals, tiles_.at(lod::pack(key)));
+    const std::size_t post =
+        nearest(tile.lines.v, place.v) * tile.lines.u.size() + nearest(tile.lines.u, place.u);
+    const double difference = tile.difference_m[post];
+    return std::isnan(difference) ? std::nullopt : std::optional(difference);
+  }
+
+ private:
+  struct Tile {
+    lod::GridLines lines;
+    std::vector<double> difference_m;  // NaN at nodata
+  };
+
+  void fill(const lod::TileKey& key, int intervals, Tile& tile) const {
+    const paging::PostHeights later = paging::heights_at_posts(later_, key, intervals);
+    const paging::PostHeights earlier = paging::heights_at_posts(earlier_, key, intervals);
+    tile.lines = lod::grid_lines(key, intervals);
+    tile.difference_m.resize(later.height_m.size());
+    const auto has_data = [](const paging::PostHeights& of, std::size_t n) {
+      return of.nodata.empty() || !of.nodata[n];
+    };
+    for (std::size_t n = 0; n < tile.difference_m.size(); ++n)
+      tile.difference_m[n] =
+          has_data(later, n) && has_data(earlier, n) ? later.height_m[n] - earlier.height_m[n] : std::nan("");
+  }
+
+  static std::size_t nearest(const std::vector<double>& lines, double x) {
+    const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, x);
+    const bool is_below_middle = x - *(above - 1) < *above - x;
+    return static_cast<std::size_t>(above - lines.begin()) - (is_below_middle ? 1 : 0);
+  }
+
+  paging::Surface later_;
+  paging::Surface earlier_;
+  std::map<std::int64_t, Tile> tiles_;
+};
+
+core::PaletteEnds difference_ends(std::span<const double> values) {
+  constexpr double kSteps = 20;
+  constexpr double kLeast_m = 0.1;
+  double most = kLeast_m;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  const double step = base::nice_step_below(most / kSteps);
+  // Of a decimal number, so that no end is 0.30000000000000004.
+  const std::string text = base::format_fixed(std::ceil(most / step) * step, base::step_decimals(step));
+  const double end = base::parse_number(text).value_or(most);
+  return {-end, end};
+}
+
 ViewPalette::ViewPalette(std::shared_ptr<const paging::PlanetFile> planet, const Common& common)
     : planet_(std::move(planet)),
       rays_(voxel::make_ray_renderer(
@@ -89,6 +158,12 @@ void ViewPalette::add(const core::DrawRequest& request) {
   is_circle_ = request.settings.colour == core::Colour::kAspect;
   if (is_circle_) return;
   const bool is_slope = request.settings.colour == core::Colour::kSlope;
+  is_difference_ = request.settings.colour == core::Colour::kDifference;
+  std::optional<Differences> differences;
+  if (is_difference_) {
+    require_earlier(request.settings, *planet_);
+    differences.emplace(planet_, kMostSampleBytes / 2);
+  }
   core::DrawRequest sample;
   sample.view = request.view;
   sample.settings = sample_settings(request.settings);
@@ -108,7 +183,13 @@ void ViewPalette::add(const core::DrawRequest& request) {
         continue;
       }
       const glm::dvec3 ray = core::pixel_ray(sample.view, part.x + x + 0.5, part.y + y + 0.5);
-      const double radius_m = glm::length(sample.view.camera.position_m + ray * range_m);
+      const glm::dvec3 place_m = sample.view.camera.position_m + ray * range_m;
+      const double radius_m = glm::length(place_m);
+      if (differences) {
+        const auto difference = differences->at(place_m / radius_m, range_m / core::focal_px(sample.view));
+        if (difference) values_.push_back(*difference);
+        continue;
+      }
       values_.push_back((radius_m - planet_->radius_m()) / request.settings.exaggeration);
     }
   }
@@ -116,6 +197,7 @@ void ViewPalette::add(const core::DrawRequest& request) {
 
 core::PaletteEnds ViewPalette::ends() {
   if (is_circle_) return {0, 360};
+  if (is_difference_) return difference_ends(values_);
   return palette_ends(values_).value_or(core::PaletteEnds());
 }
 
@@ -134,7 +216,9 @@ void take_ends(core::Settings& settings, const core::PaletteEnds& view) {
 }
 
 std::string palette_text(const core::SettingsValues& settings) {
-  const char* unit = settings.colour == core::Colour::kElevation ? " m" : " degrees";
+  const bool is_metres =
+      settings.colour == core::Colour::kElevation || settings.colour == core::Colour::kDifference;
+  const char* unit = is_metres ? " m" : " degrees";
   if (settings.palette_low == settings.palette_high)
     return "palette of its usual range: the view shows no ground";
   return "palette from " + base::format_number(settings.palette_low.value_or(0)) + " to " +

@@ -14,6 +14,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,10 @@ core::DrawRequest reduced(core::DrawRequest request);
 // is at most a twentieth of their distance; nullopt without values. Reorders the values.
 std::optional<core::PaletteEnds> palette_ends(std::vector<double>& values);
 
+// Returns the ends for differences: as far from 0 as the largest one, rounded away from 0 to a step of 1, 2 or 5 times a
+// power of ten that is at most a twentieth of it, and at least 0.1 m.
+core::PaletteEnds difference_ends(std::span<const double> values);
+
 // Collects what views show. One thread at a time.
 class ViewPalette {
  public:
@@ -49,7 +54,8 @@ class ViewPalette {
 
   // Adds the values, of the colour of its settings, that every pixel of a request's view shows; ground without
   // data has none. Elevations are those of the pixels; slopes those that are painted, to within 0.2 degrees.
-  // Throws what renderers throw.
+  // Differences are those of the nearest posts, which are about as far apart as the pixels. Throws what renderers throw,
+  // and UsageError for differences of a planet without another one (PlanetFile::earlier()).
   void add(const core::DrawRequest& request);
 
   // Forgets what was added. Terrain that was read is kept.
@@ -60,10 +66,13 @@ class ViewPalette {
   core::PaletteEnds ends();
 
  private:
+  class Differences;
+
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::unique_ptr<core::Renderer> rays_;
   std::vector<double> values_;
   bool is_circle_ = false;
+  bool is_difference_ = false;
 };
 
 // Puts the ends of the view in place of auto.

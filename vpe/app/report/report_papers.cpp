@@ -14,6 +14,7 @@
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/report/papers_relief.h"
 #include "vpe/app/report/papers_stereo.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
@@ -61,24 +62,32 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   const InterruptGuard guard;
   const auto planet = open_planet(arguments.planet, common);
   const StereoPaperPlan plan = make_plan(arguments, common, planet);
+  const ReliefPaperPlan relief_plan{.rounds = plan.rounds, .is_short = arguments.brief};
   ProgressLine line(common.quiet);
   int done = 0;
   const StereoPaper stereo = measure_stereo_paper(plan, planet, folder, [&] {
     InterruptGuard::check();
     line.show("stereo", static_cast<double>(done++) / count_steps(plan));
   });
+  done = 0;
+  const ReliefPaper relief = measure_relief_paper(relief_plan, folder, [&] {
+    InterruptGuard::check();
+    line.show("relief", static_cast<double>(done++) / count_steps(relief_plan));
+  });
+  std::vector<report::Table> tables = stereo.tables;
+  tables.insert(tables.end(), relief.tables.begin(), relief.tables.end());
 
   report::Page page;
   page.title = "Figures of the papers, published and here";
   page.paragraphs = report::to_paragraphs(facts);
-  page.paragraphs.push_back("Planet " + planet->path() + ", pose " + arguments.pose + ", " + arguments.size +
-                            " pixels.");
-  page.sections.push_back(stereo.section);
+  page.paragraphs.push_back("Stereo: planet " + planet->path() + ", pose " + arguments.pose + ", " +
+                            arguments.size + " pixels.");
+  page.sections = {stereo.section, relief.section};
   nlohmann::json json{{"run", report::to_json(facts)}, {"load_after", report::load_now()},
                       {"planet", planet->path()},      {"pose", arguments.pose},
                       {"size", arguments.size},        {"eye_base_m", stereo.eye_base_m}};
-  for (const report::Table& table : stereo.tables) json[table.name] = report::to_json(table);
-  write_report(folder, "papers", page, json, stereo.tables);
+  for (const report::Table& table : tables) json[table.name] = report::to_json(table);
+  write_report(folder, "papers", page, json, tables);
   if (common.json) {
     print_json(json);
   } else if (!common.quiet) {
@@ -99,11 +108,12 @@ report::Page papers_report(const ReportRequest& request, const Common& common) {
 
 void add_report_papers(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<PapersArguments>();
-  CLI::App* command =
-      add_command(report, "papers",
-                  "Measure what the papers that vpe follows have published, and put both side by side; so "
-                  "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection",
-                  common, true);
+  CLI::App* command = add_command(
+      report, "papers",
+      "Measure what the papers that vpe follows have published, and put both side by side; so "
+      "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, and the table and "
+      "Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
+      common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command
       ->add_option("-o,--output", arguments->folder,
@@ -129,7 +139,8 @@ void add_report_papers(CLI::App& report, Common& common) {
   command->add_option("--rounds", arguments->rounds, "Number of times that each image is timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--short", arguments->brief, "Two rounds on one thread; under a minute");
+  command->add_flag("--short", arguments->brief,
+                    "Two rounds on one thread, bilinear relief only; under a minute");
   add_examples(*command, {{"under a minute", "vpe report papers --short -o papers"},
                           {"images of today's size", "vpe report papers mars.vpe --size 1920x1080 -o papers"}});
   command->callback([arguments, &common] { report_papers(*arguments, common); });

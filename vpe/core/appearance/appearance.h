@@ -26,11 +26,12 @@ enum class Shading {
 
 // The value that the colour of the ground shows.
 enum class Colour {
-  kNone,       // one colour everywhere
-  kElevation,  // metres above the sphere, without exaggeration
-  kSlope,      // degrees between the normal and the vertical, of the exaggerated ground
-  kAspect,     // degrees clockwise from north of the direction of descent, of the exaggerated ground
-  kImage,      // the planet file's imagery at each post, as colours of vertices
+  kNone,        // one colour everywhere
+  kElevation,   // metres above the sphere, without exaggeration
+  kSlope,       // degrees between the normal and the vertical, of the exaggerated ground
+  kAspect,      // degrees clockwise from north of the direction of descent, of the exaggerated ground
+  kImage,       // the planet file's imagery at each post, as colours of vertices
+  kDifference,  // metres above the ground of another planet (PlanetFile::compared_with()), without exaggeration
 };
 
 enum class Background { kBlack, kWhite, kSky };

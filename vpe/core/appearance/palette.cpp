@@ -25,12 +25,14 @@ Range usual_range(Colour colour) {
     case Colour::kElevation: return {-8200, 21300};
     case Colour::kSlope: return {0, 45};
     case Colour::kAspect: return {0, 360};
+    case Colour::kDifference: return {-10, 10};
     default: throw std::invalid_argument("this colour has no scale of values");
   }
 }
 
 std::string_view usual_palette(Colour colour) {
   if (colour == Colour::kSlope) return "viridis";
+  if (colour == Colour::kDifference) return "diverging";
   return colour == Colour::kAspect ? "aspect" : "relief";
 }
 
@@ -147,7 +149,7 @@ ColourScale::ColourScale(const Appearance& appearance)
     : palette_(palette_of(appearance)),
       low_(range_of(appearance, palette_).low),
       high_(range_of(appearance, palette_).high),
-      unit_(appearance.colour == Colour::kElevation ? "m" : "deg") {
+      unit_(appearance.colour == Colour::kElevation || appearance.colour == Colour::kDifference ? "m" : "deg") {
   palette_ = stretched(palette_, {low_, high_});
 }
 

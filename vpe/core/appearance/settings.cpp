@@ -33,15 +33,16 @@ const KeyRegistry<SettingsValues>& registry() {
       {"colour",
        Declare::choice<&V::colour>({word("none", Colour::kNone), word("elevation", Colour::kElevation),
                                     word("slope", Colour::kSlope), word("aspect", Colour::kAspect),
-                                    word("image", Colour::kImage)}),
+                                    word("image", Colour::kImage), word("difference", Colour::kDifference)}),
        "",
        "value that the colour of coloured and unlit surfaces shows; image: the planet file's imagery at each "
-       "post"},
+       "post; difference: height above the earlier planet of --compare"},
       {"palette", Declare::text<&V::palette>(palette_grammar(), palette_problem), "",
-       "colours of elevation, slope and aspect; auto: a palette that suits the value shown"},
+       "colours of elevation, slope, aspect and difference; auto: a palette that suits the value shown"},
       {"palette.low", Declare::number_or_word<&V::palette_low>(-1e6, 1e6, "auto"), "",
        "value at the palette's lower end, metres or degrees; both ends equal: a range that suits the value "
-       "shown; auto: 2 % of what the view shows lie below"},
+       "shown; auto: 2 % of what the view shows lie below, and of differences both ends are as far from 0 as the "
+       "largest one in view"},
       {"palette.high", Declare::number_or_word<&V::palette_high>(-1e6, 1e6, "auto"), "",
        "value at the palette's upper end; auto: 2 % of what the view shows lie above"},
       {"ramp.low.hue", Declare::number<&V::low_hue_deg>(-360, 720), "deg", "palette=hsv: hue at the lower end"},

@@ -199,6 +199,7 @@ void ImagePainter::read(const PaintPage& page) const {
     shading.exaggeration = page.exaggeration;
     shading.shadows = page.sun != glm::dvec3(0);
     shading.sun = page.sun;
+    if (page.has_differences) shading.colour_source = paging::ColourSource::kDifference;
     shader_.normals(page.key, shading);
   } catch (const paging::PlanetError& e) {
     failures_.record(page, e.what());

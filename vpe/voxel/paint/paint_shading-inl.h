@@ -103,7 +103,7 @@ inline HWY_NOINLINE void take_scale(const ScaleTable& table, const core::ColourS
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V shown_value(D d, const PaintJob& job, paging::ColourSource what, const Block& block, int i,
                          const Triple<V>& normal, V height) {
-  if (what == paging::ColourSource::kElevation) return height;
+  if (what == paging::ColourSource::kElevation || what == paging::ColourSource::kDifference) return height;
   // A vector of doubles holds half as many places as a vector of floats.
   const Doubles dd;
   const Halves dh;

@@ -21,10 +21,16 @@ void PaintFailures::clear() {
 }
 
 PaintPage posts_page(const lod::TileKey& key, const paging::ShadingParams& shading) {
-  return {key, false, shading.exaggeration, shading.lit && shading.shadows ? shading.sun : glm::dvec3(0)};
+  return {key, false, shading.exaggeration, shading.lit && shading.shadows ? shading.sun : glm::dvec3(0),
+          paging::shows_difference(shading)};
 }
 
-PaintPage texels_page(const lod::TileKey& key) { return {key, true, 1, glm::dvec3(0)}; }
+PaintPage texels_page(const lod::TileKey& key) {
+  PaintPage page;
+  page.key = key;
+  page.is_image = true;
+  return page;
+}
 
 PaintSources::PaintSources(const paging::PlanetFile& planet, const paging::TerrainShader& shader,
                            const paging::ShadingParams& shading, PaintFailures& failures,

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "paging/shading/terrain_shader.h"
@@ -23,6 +24,7 @@ struct PaintPage {
   // Describe posts: the exaggeration, and the sun where shadows are cast, else 0.
   double exaggeration = 1;
   glm::dvec3 sun{0, 0, 0};
+  bool has_differences = false;  // in place of heights (paging::NormalTile)
   bool operator==(const PaintPage&) const = default;
 };
 
@@ -43,7 +45,10 @@ class PaintFailures {
  private:
   struct Less {
     bool operator()(const PaintPage& a, const PaintPage& b) const {
-      return a.is_image != b.is_image ? b.is_image : lod::pack(a.key) < lod::pack(b.key);
+      const auto order = [](const PaintPage& page) {
+        return std::tuple(page.is_image, page.has_differences, lod::pack(page.key));
+      };
+      return order(a) < order(b);
     }
   };
   mutable std::mutex mutex_;

@@ -13,7 +13,8 @@ using paging::ColourSource;
 constexpr int kKnotLevel = 5;
 
 bool of_posts(ColourSource s) {
-  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect;
+  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect ||
+         s == ColourSource::kDifference;
 }
 
 void set_axes(mars::Face face, PaintTile& out) {

@@ -33,6 +33,9 @@ struct ImageRequest {
   // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
   // until it is shown; not with stereo.
   glm::ivec2 margin_px{0, 0};
+  // Also draws the planet that this one is compared with (paging::PlanetFile::earlier()), by the same request; not with
+  // stereo, and nothing without such a planet.
+  bool with_earlier = false;
 };
 
 // Holds the result of a request.
@@ -45,6 +48,9 @@ struct DrawnImage {
   // The image of each eye, with its margin, as a grid that follows the camera; none unless the request wants rough ranges
   // and there are some.
   std::vector<warp::ImageGrid> grids;
+  // The same of the earlier planet, if the request asks for it and there is one.
+  core::RgbImage earlier;
+  std::vector<warp::ImageGrid> earlier_grids;
   std::vector<float> range_m;  // of its pixels, as core::Frame::range_m; empty unless the request keeps it
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
