@@ -77,6 +77,17 @@ TEST(BackendChoice, LevelControlIsForRaysWithinATolerance) {
   expect_rays([](auto& r) { r.interest.push_back({0, 0, 1000, 1}); });
 }
 
+// Smooth patches are not triangles, whatever else is asked for.
+TEST(BackendChoice, SmoothGroundIsDrawnByRays) {
+  RenderOptions smooth;
+  smooth.set = {"rays.mode=perturbation"};
+  core::DrawRequest request = looking(-10);
+  request.settings.shading = core::Shading::kFlat;
+  const BackendChoice chosen = choice({request}, smooth);
+  EXPECT_EQ(chosen.backend, Backend::kRay);
+  EXPECT_EQ(chosen.settings.values().ray_mode, core::RayMode::kPerturbation);
+}
+
 TEST(BackendChoice, RaysKeepToTheTolerance) {
   const auto settings = [](const std::vector<std::string>& set, double tolerance_px = -1) {
     RenderOptions options;

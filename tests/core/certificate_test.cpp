@@ -35,12 +35,15 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.is_below_ground = true;
   c.thinning_px = 2.125;
   c.middle_bound_px = 0.25;
+  c.smoothing_m = 1.75;
+  c.smoothing_px = 0.0625;
   c.carried = Certificate::Carried{0.875, 0.9, 0.0625, 0.0375};
   nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find(" " + c.synthetic), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
   EXPECT_NE(meaning.find("thinning_px"), std::string::npos);
+  EXPECT_NE(meaning.find("smoothing_px"), std::string::npos);
   EXPECT_NE(meaning.find("carrying_px"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
   EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
@@ -56,7 +59,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                       {"resampling_rms_m", 0.75},    {"source_accuracy_m", 3.0},    {"illustration", true},
                       {"exaggeration", 2.0},         {"corner_stretch", 2.5},       {"below_ground", true},
                       {"carrying_px", 0.875},        {"carried_share", 0.9},        {"between_share", 0.0625},
-                      {"drawn_share", 0.0375}}));
+                      {"drawn_share", 0.0375},       {"smoothing_m", 1.75},         {"smoothing_px", 0.0625}}));
 }
 
 TEST(Certificate, TheSourcesSayWhatIsSynthetic) {

@@ -28,6 +28,11 @@ std::string meaning(const Certificate& c) {
         "shift_bound_px that this adds, and what is narrower than two pixels may be missing there. "
         "middle_bound_px: shift_bound_px of the middle.";
   }
+  if (c.smoothing_m > 0) {
+    text +=
+        " The ground is drawn as smooth patches through the posts of the exact surface (rays.mode=perturbation): "
+        "smoothing_m is the largest distance between both, smoothing_px the part of shift_bound_px that this is.";
+  }
   if (c.carried) {
     text +=
         " Pixels were carried from the picture of the other eye: carrying_px is the part of shift_bound_px that this "
@@ -77,6 +82,10 @@ nlohmann::ordered_json to_json(const Certificate& c) {
     json["thinning_px"] = c.thinning_px;
     json["middle_bound_px"] = nullptr;
     if (c.middle_bound_px) json["middle_bound_px"] = *c.middle_bound_px;
+  }
+  if (c.smoothing_m > 0) {
+    json["smoothing_m"] = c.smoothing_m;
+    json["smoothing_px"] = c.smoothing_px;
   }
   if (c.carried) {
     json["carrying_px"] = c.carried->added_px;

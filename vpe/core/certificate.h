@@ -29,6 +29,10 @@ struct Certificate {
   double thinning_px = 0;
   // The bound of the middle, where rays are not thinned. Absent if all of the image has one density.
   std::optional<double> middle_bound_px;
+  // Describes an image of smooth patches (rays.mode=perturbation): the largest distance between the patches and the
+  // reference surface, and the part of shift_bound_px that this is. 0 in other modes.
+  double smoothing_m = 0;
+  double smoothing_px = 0;
   // Describes an image of carried pixels (vpe/warp): part of shift_bound_px, by how much carried pixels may be off
   // because of that; and the shares of pixels that were carried, lie between carried ones, and were drawn. Absent where all
   // pixels were drawn.

@@ -68,7 +68,8 @@ void FramePrefetcher::begin(const core::DrawRequest& request) {
   auto job = std::make_shared<Job>(pool_);
   const auto add = [&](core::DrawRequest later) {
     later.paging = {};
-    if (core::check(later.view).empty()) job->reading.push_back(std::move(later));
+    // Smooth ground is not cast by columns.
+    if (core::check(later.view).empty() && !smooth_form(later)) job->reading.push_back(std::move(later));
   };
   const core::PagingRequest& paging = request.paging;
   if (paging.next) {

@@ -31,6 +31,7 @@
 #include "vpe/voxel/frame_prefetcher.h"
 #include "vpe/voxel/paint/image_painter.h"
 #include "vpe/voxel/pixel_caster.h"
+#include "vpe/voxel/smooth/smooth_caster.h"
 #include "vpe/voxel/tile_loader.h"
 
 namespace vpe::voxel {
@@ -47,6 +48,8 @@ double ms_since(Clock::time_point start) {
 constexpr std::size_t kBytesOfSamples = 51;
 constexpr double kCastShare = 0.6;
 constexpr double kPaintShare = 0.4;
+// Of smooth tiles, beside height grids, which stay empty where smooth ground alone is drawn.
+constexpr double kSmoothShare = 0.45;
 // Upcoming views of an image that may not wait. Each takes a thousandth of its rays.
 constexpr std::size_t kMostExpected = 3;
 constexpr std::size_t kMostKeptPixels = std::size_t{1} << 24;
@@ -74,6 +77,7 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads),
         max_image_bytes_(options.max_image_bytes),
+        smooth_bytes_(share(options, kSmoothShare)),
         explained_(options.explained),
         prefetcher_(caster_, painter_, pool_, options.memory_bytes),
         loader_(caster_, painter_, options.threads),
@@ -100,6 +104,9 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
     std::int64_t nodata_pixels = 0;
     std::optional<TileUsage> middle;  // of a foveated image
     bool is_thinned = false;
+    // Of an image of smooth ground.
+    double smoothing_m = 0;
+    double smoothing_px = 0;
   };
 
   core::DrawResult draw_image(const core::DrawRequest& request);
@@ -118,9 +125,16 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
                 Image& image);
   void draw_foveated(const core::DrawRequest& request, const FoveaPlan& plan, std::span<float> range_m,
                      std::span<base::Rgb> colour, Image& image);
+  // Casts smooth ground and, unless `colour` is empty, paints it.
+  void draw_smooth(const core::DrawRequest& request, const SmoothForm& form, std::span<float> range_m,
+                   std::span<base::Rgb> colour, Image& image);
+  void draw_smooth_pixels(const core::DrawRequest& request, const SmoothForm& form,
+                          const core::WantedPixels& wanted, core::Frame& frame, Image& image);
+  void take_usage(const SmoothUsage& usage, Image& image) const;
+  const SmoothGround& smooth_ground() const;
   // Returns the number of nodata pixels. Smooths edges where there is one sample a pixel.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
-                     std::span<base::Rgb> colour, Image& image);
+                     std::span<base::Rgb> colour, Image& image, std::span<const PixelNormal> normals = {});
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
                             const Image& image) const;
   // States what the image lacked, and lets the loader load it.
@@ -132,10 +146,13 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   ImagePainter painter_;
   base::ThreadPool pool_;
   std::size_t max_image_bytes_;
+  std::size_t smooth_bytes_;
   std::vector<lod::TileExplanation>* explained_;
   FramePrefetcher prefetcher_;
   TileLoader loader_;
   PixelCaster pixel_caster_;
+  mutable std::unique_ptr<const SmoothGround> smooth_;  // made when it is first needed
+  std::vector<PixelNormal> normals_;
   SectorCaster hint_sectors_;
   std::optional<double> exaggeration_;        // of the last image
   bool has_new_planet_ = false;               // since the last image
@@ -194,7 +211,9 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   c.quantisation_px = range_error_px * std::hypot(1.0, usage.steepest_slope);
   c.geometric_error_m = usage.geometric_error_m;
   c.screen_space_error_px = usage.screen_space_error_px;
-  c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
+  c.smoothing_m = image.smoothing_m;
+  c.smoothing_px = image.smoothing_px;
+  c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px + c.smoothing_px;
   if (image.is_thinned) {
     // Of the whole planet: what lies beside a ray may be ground that no ray has met.
     c.thinning_px = thinning_px(planet_->tree().steepest_slope(request.settings.exaggeration));
@@ -222,10 +241,12 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
 }
 
 std::int64_t RayRenderer::paint(const core::DrawRequest& request, std::span<const float> range_m,
-                                std::span<base::Rgb> colour, Image& image) {
+                                std::span<base::Rgb> colour, Image& image,
+                                std::span<const PixelNormal> normals) {
   const bool smooth = request.settings.smooth_edges && request.settings.samples <= 1 &&
                       request.view.projection == core::Projection::kPerspective;
-  const std::int64_t nodata_pixels = painter_.paint(request, range_m, colour, {}, pool_, &image.reading);
+  const std::int64_t nodata_pixels =
+      painter_.paint(request, range_m, colour, {}, pool_, &image.reading, normals);
   image.absent_colours.insert(image.absent_colours.end(), image.reading.absent.begin(),
                               image.reading.absent.end());
   const glm::ivec2 size = core::drawn_size(request.view);
@@ -237,10 +258,47 @@ std::int64_t RayRenderer::paint(const core::DrawRequest& request, std::span<cons
   return nodata_pixels;
 }
 
+const SmoothGround& RayRenderer::smooth_ground() const {
+  if (!smooth_) smooth_ = std::make_unique<const SmoothGround>(caster_.surface(), smooth_bytes_);
+  return *smooth_;
+}
+
+void RayRenderer::take_usage(const SmoothUsage& usage, Image& image) const {
+  image.usage.add(usage.tiles, planet_->tree());
+  image.smoothing_m = std::max(image.smoothing_m, usage.smoothing_m);
+  image.smoothing_px = std::max(image.smoothing_px, usage.smoothing_px);
+}
+
+void RayRenderer::draw_smooth(const core::DrawRequest& request, const SmoothForm& form,
+                              std::span<float> range_m, std::span<base::Rgb> colour, Image& image) {
+  const bool is_lit = !colour.empty();
+  normals_.resize(is_lit ? range_m.size() : 0);
+  take_usage(cast_smooth(smooth_ground(), request.view, form, pool_, {range_m, normals_}), image);
+  if (is_lit) image.nodata_pixels += paint(request, range_m, colour, image, normals_);
+}
+
+// Casts the wanted pixels but for those that show sky, and sets normals_ for painting.
+void RayRenderer::draw_smooth_pixels(const core::DrawRequest& request, const SmoothForm& form,
+                                     const core::WantedPixels& wanted, core::Frame& frame, Image& image) {
+  std::vector<std::uint8_t> is_cast(wanted.is_wanted.begin(), wanted.is_wanted.end());
+  for (std::size_t n = 0; n < is_cast.size(); ++n) {
+    if (is_cast[n] == 0 || wanted.clear_m[n] != core::kSkyRange) continue;
+    is_cast[n] = 0;
+    frame.range_m[n] = core::kSkyRange;
+  }
+  if (request.want_colour) normals_.assign(is_cast.size(), {});
+  take_usage(cast_smooth(smooth_ground(), request.view, form, pool_, {frame.range_m, normals_, is_cast}),
+             image);
+}
+
 void RayRenderer::draw_one(const core::DrawRequest& request, std::span<float> range_m,
                            std::span<base::Rgb> colour, Image& image) {
   if (const std::optional<FoveaPlan> plan = fovea_plan(request)) {
     draw_foveated(request, *plan, range_m, colour, image);
+    return;
+  }
+  if (const std::optional<SmoothForm> form = smooth_form(request)) {
+    draw_smooth(request, *form, range_m, colour, image);
     return;
   }
   const RangeOptions options = range_options(request, planet_->radius_m());
@@ -414,6 +472,7 @@ void RayRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet
   loader_.reset();
   caster_.change_planet(planet);
   painter_.change_planet(planet);
+  smooth_.reset();
   planet_ = std::move(planet);
   has_new_planet_ = true;
 }
@@ -446,6 +505,11 @@ bool RayRenderer::is_below_ground(const core::DrawRequest& request) const {
   const glm::dvec3& camera_m = request.view.camera.position_m;
   const double distance_m = glm::length(camera_m);
   if (!(distance_m > 0)) return true;
+  if (const std::optional<SmoothForm> form = smooth_form(request)) {
+    const SmoothGround& ground = smooth_ground();
+    return distance_m < planet_->radius_m() + ground.highest_m(camera_m, form->exaggeration) &&
+           distance_m < planet_->radius_m() + ground.at(camera_m, *form).height_m;
+  }
   const double exaggeration = request.settings.exaggeration;
   const lod::TileInfo& below =
       planet_->tree().deepest(lod::tile_at(mars::chart_point(camera_m), lod::kMaxLevel));
@@ -488,7 +552,7 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   Image image(caster_.store(), request, reading_rule(request, reads_all));
   if (request.want_colour && request.settings.samples > 1) {
     draw_samples(request, frame, image);
-  } else if (fovea_plan(request)) {
+  } else if (fovea_plan(request) || smooth_form(request)) {
     draw_one(request, frame.range_m, frame.colour, image);
     if (request.paging.wait) prefetcher_.begin(request);
   } else {
@@ -507,12 +571,14 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
     range_m_ = {};
     inverse_depth_ = {};
     fovea_ = {};
+    normals_ = {};
   }
   result.stats.draw_ms = ms_since(start);
-  result.stats.bytes_resident =
-      static_cast<std::int64_t>(caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
-                                (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) +
-                                fovea_.bytes() + planet_->tree().bytes());
+  result.stats.bytes_resident = static_cast<std::int64_t>(
+      caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
+      (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + fovea_.bytes() +
+      planet_->tree().bytes() + (smooth_ ? smooth_->bytes_resident() : 0) +
+      normals_.capacity() * sizeof(PixelNormal));
   finish_paging(request, image, result);
   return result;
 }
@@ -542,12 +608,17 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
   const auto start = Clock::now();
   Image image(caster_.store(), for_planet, reading_rule(for_planet, reads_all));
   core::DrawResult result;
-  image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted,
-                                   pool_, frame.range_m, &image.fallbacks);
+  normals_.clear();
+  if (const std::optional<SmoothForm> form = smooth_form(for_planet)) {
+    draw_smooth_pixels(for_planet, *form, wanted, frame, image);
+  } else {
+    image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted,
+                                     pool_, frame.range_m, &image.fallbacks);
+  }
   result.stats.select_ms = ms_since(start);
   if (request.want_colour) {
-    image.nodata_pixels =
-        painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_, &image.reading);
+    image.nodata_pixels = painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_,
+                                         &image.reading, normals_);
     image.absent_colours = image.reading.absent;
   }
   result.certificate = certify(for_planet, frame, image);

@@ -8,6 +8,7 @@
 //     ColumnWalk      leads a group of columns over the tiles from near to far (cast/column_walk.h),
 //     walk_grid()     resolves rows at the edges of one tile's posts (cast/columns.h),
 //     refine_row()    moves the ranges from the columns to the pixels' own rays (cast/refine.h);
+//   cast_smooth()   takes its place for smooth ground (smooth/smooth_caster.h),
 //   ImagePainter    colours ground, haze and sky of these ranges (paint/image_painter.h);
 //   RayRenderer     (this file) averages samples, smooths edges, applies gamma and states the certificate.
 // FramePrefetcher starts the same steps early for the next frame of a film (frame_prefetcher.h).
@@ -35,7 +36,8 @@ namespace vpe::voxel {
 
 struct RayOptions {
   // Budget for decoded ground and its colours: 0.6 of it for casting, 0.4 for painting. Smaller: tiles are read
-  // and decoded again, which takes time; larger: no gain once all tiles of an image fit.
+  // and decoded again, which takes time; larger: no gain once all tiles of an image fit. Smooth ground, once it was drawn,
+  // takes up to 0.45 of it besides.
   std::size_t memory_bytes = std::size_t{1024} << 20;
   // Threads of casting and painting, the caller included; 0: as many as the machine runs at once. Fewer leave
   // processors to other work; images do not depend on it.
@@ -54,6 +56,10 @@ struct RayOptions {
 // within RangeCaster::range_error(). With multires, or where the request asks for coarsening, far tiles are
 // coarser, and the certificate states the bound. Colours are those of core::Appearance, from posts and images
 // about as fine as a pixel.
+//
+// Smooth ground: with rays.mode=perturbation a pixel shows the first point of smooth patches through the posts
+// (smooth/smooth_caster.h), and the certificate states their distance from the reference surface. Such images read all
+// tiles that they need: paging::PlanetError for one that cannot be read. Images that may be coarser are cast in cells.
 //
 // Samples: several samples are complete images with shifted pixel centres, and their mean; the range is that of
 // the pixel's centre. (Cohen-Or 1996, section 2, shares one column's walk among vertical samples; this does

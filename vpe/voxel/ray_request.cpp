@@ -5,6 +5,7 @@
 
 #include "lod/options.h"
 #include "vpe/core/appearance/inspect.h"
+#include "vpe/voxel/paint/pixel_normal.h"
 
 namespace vpe::voxel {
 
@@ -19,15 +20,21 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
   return options;
 }
 
+std::optional<SmoothForm> smooth_form(const core::DrawRequest& request) {
+  if (request.settings.ray_mode != core::RayMode::kPerturbation || request.coarsening > 1) return std::nullopt;
+  return SmoothForm{request.settings.ray_patch, request.settings.exaggeration};
+}
+
 std::size_t ray_image_bytes(const core::DrawRequest& request) {
   // Colour, range and inverse depth, and copies while the image is smoothed and written.
   constexpr std::size_t kBytesPerPixel = 16;
   constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
   constexpr std::size_t kBytesOfFovea = 8;  // the outer image has a quarter of the pixels
+  const bool has_normals = request.settings.ray_mode == core::RayMode::kPerturbation;
   const glm::ivec2 size = core::drawn_size(request.view);
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
          (kBytesPerPixel + (request.settings.samples > 1 ? kBytesPerSum : 0) +
-          (request.settings.ray_fovea ? kBytesOfFovea : 0));
+          (request.settings.ray_fovea ? kBytesOfFovea : 0) + (has_normals ? sizeof(PixelNormal) : 0));
 }
 
 std::string why_not(const core::DrawRequest& request) {

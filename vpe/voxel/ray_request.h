@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "vpe/core/frame.h"
 #include "vpe/voxel/cast/range_caster.h"
+#include "vpe/voxel/smooth/smooth_form.h"
 
 namespace vpe::voxel {
 
@@ -28,5 +30,9 @@ std::string_view multires_control(const core::DrawRequest& request);
 // Returns how the ranges of a request are cast: the mode of the settings, its level control, and cells that grow
 // with the request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
 RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m);
+
+// Returns the patches of a request that shows smooth ground: rays.mode=perturbation without coarsening. Coarser images are
+// cast in cells of the tiles, as in the other modes.
+std::optional<SmoothForm> smooth_form(const core::DrawRequest& request);
 
 }  // namespace vpe::voxel

@@ -52,6 +52,8 @@ void state(const warp::CarriedImage& image, const core::Certificate& first, core
   larger(&core::Certificate::quantisation_px);
   larger(&core::Certificate::shift_bound_px);
   larger(&core::Certificate::thinning_px);
+  larger(&core::Certificate::smoothing_m);
+  larger(&core::Certificate::smoothing_px);
   larger(&core::Certificate::corner_stretch);
   certificate.tiles_missing += first.tiles_missing;
   certificate.tiles_substituted += first.tiles_substituted;

@@ -110,8 +110,8 @@ void print_summary(const RenderArguments& arguments, const core::DrawRequest& re
   if (c.corner_stretch > kWideStretch)
     corners = ", up to " + base::format_fixed(c.shift_bound_px * c.corner_stretch, 2) + " px in the corners";
   std::printf("%s: %s in %d tiles, geometry within %.2f px (%s)%s\n", arguments.output.c_str(), what.c_str(),
-              result.stats.tiles_drawn, c.shift_bound_px, length_text(c.geometric_error_m, 3).c_str(),
-              corners.c_str());
+              result.stats.tiles_drawn, c.shift_bound_px,
+              length_text(std::max(c.geometric_error_m, c.smoothing_m), 3).c_str(), corners.c_str());
 }
 
 void write_stereo(const RenderArguments& arguments, const Common& common, const StereoImage& drawn,

@@ -152,10 +152,16 @@ const KeyRegistry<SettingsValues>& registry() {
        "it saves more time than it costs"},
       {"rays.mode",
        Declare::choice<&V::ray_mode>({word("exact", RayMode::kExact), word("multires", RayMode::kMultires),
-                                      word("reference", RayMode::kReference)}),
+                                      word("reference", RayMode::kReference),
+                                      word("perturbation", RayMode::kPerturbation)}),
        "",
        "backend ray: exact casts against the exact surface; multires takes coarser cells far away; reference "
-       "follows each ray in steps of 0.6 cells, slowly, for comparison"},
+       "follows each ray in steps of 0.6 cells, slowly, for comparison; perturbation casts against smooth patches "
+       "through the same posts, without facets"},
+      {"rays.patch",
+       Declare::choice<&V::ray_patch>(
+           {word("bicubic", RayPatch::kBicubic), word("bilinear", RayPatch::kBilinear)}),
+       "", "backend ray, mode perturbation: heights between posts; bilinear has creases at the lines of posts"},
       {"rays.cell", Declare::number<&V::ray_cell_px>(RayLimits::kLeastCell_px, RayLimits::kMostCell_px), "px",
        "backend ray, mode multires: largest distance in the image between a cell and the surface; larger: "
        "faster"},

@@ -30,9 +30,16 @@ enum class LodMetric {
 
 // The method by which the ray backend finds the ground.
 enum class RayMode {
-  kExact,      // intersects the reference surface exactly
-  kMultires,   // intersects cells about as wide as a pixel, far away
-  kReference,  // follows each ray by itself in fixed steps, as the papers do: the baseline of comparisons
+  kExact,         // intersects the reference surface exactly
+  kMultires,      // intersects cells about as wide as a pixel, far away
+  kReference,     // follows each ray by itself in fixed steps, as the papers do: the baseline of comparisons
+  kPerturbation,  // intersects smooth patches through the posts of the reference surface, in place of flat facets
+};
+
+// The heights between posts with RayMode::kPerturbation.
+enum class RayPatch {
+  kBicubic,   // with slopes that go on from cell to cell
+  kBilinear,  // without a step, but with a crease at each line of posts
 };
 
 enum class Occlusion { kAuto, kOff, kOn };
@@ -74,6 +81,7 @@ struct SettingsValues : Appearance, Overlays {
   double lod_frame_ms = 0;
   Occlusion occlusion = Occlusion::kAuto;
   RayMode ray_mode = RayMode::kExact;
+  RayPatch ray_patch = RayPatch::kBicubic;
   // RayMode::kMultires: largest distance between a cell and the surface, in the image. Smaller: finer, slower.
   double ray_cell_px = 1;
   // RayMode::kMultires, perspective: the share of each side of the image, about its middle, that has a ray for each

@@ -94,7 +94,8 @@ void ImagePainter::set_shading(const core::DrawRequest& request) {
 
 std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
                                  std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted,
-                                 base::ThreadPool& pool, Reading* reading) {
+                                 base::ThreadPool& pool, Reading* reading,
+                                 std::span<const PixelNormal> normals) {
   set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
@@ -116,6 +117,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.range_m = range_m.data();
   job.colour = colour.data();
   job.wanted = wanted.empty() ? nullptr : wanted.data();
+  job.normals = normals.empty() ? nullptr : normals.data();
 
   if (!job.by_point || reading == nullptr) return paint_bands(job, shading_, pool, reading);
   try {

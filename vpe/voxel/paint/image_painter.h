@@ -24,6 +24,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
 #include "vpe/voxel/paint/paint_sources.h"
+#include "vpe/voxel/paint/pixel_normal.h"
 #include "vpe/voxel/paint/scale_table.h"
 
 namespace vpe::voxel {
@@ -62,9 +63,12 @@ class ImagePainter {
     std::vector<AbsentPage> absent = {};  // out
     std::string failure_of_points = {};   // out: why ground could not be coloured pixel by pixel, or ""
   };
+  //
+  // With `normals`, an entry for each pixel or empty, light, slope and aspect follow from these where they have a share. Flat
+  // shading does not use them.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted, base::ThreadPool& pool,
-                     Reading* reading = nullptr);
+                     Reading* reading = nullptr, std::span<const PixelNormal> normals = {});
 
   // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given
   // ranges. `downsampled` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and

@@ -216,10 +216,24 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
   }
 }
 
+// Sets the normals in `post` of pixels that have one of their own.
+inline HWY_NOINLINE void take_normals(const PaintJob& job, Block& block) {
+  const PixelNormal* const normals = job.normals + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x;
+  for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const PixelNormal& own = normals[i];
+    float* const post = block.post[i];
+    post[0] += own.share * (own.x - post[0]);
+    post[1] += own.share * (own.y - post[1]);
+    post[2] += own.share * (own.z - post[2]);
+  }
+}
+
 // Colours the block's ground. Requires locate().
 inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
   const PaintNeeds needs = paint_needs(*job.shading);
   if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
+  if (needs.posts && job.normals != nullptr) take_normals(job, block);
   if (needs.image) take_texels(block);
   paint_shading(job, block);
 }

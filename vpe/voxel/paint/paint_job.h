@@ -10,6 +10,7 @@
 
 #include "vpe/core/frame.h"
 #include "vpe/voxel/paint/paint_tiles.h"
+#include "vpe/voxel/paint/pixel_normal.h"
 #include "vpe/voxel/paint/ray_rows.h"
 #include "vpe/voxel/paint/scale_table.h"
 
@@ -36,6 +37,7 @@ struct PaintJob {
   const float* range_m = nullptr;
   base::Rgb* colour = nullptr;
   const std::uint8_t* wanted = nullptr;  // pixels to paint: those that are not 0; null: all
+  const PixelNormal* normals = nullptr;  // null: those of the posts everywhere
 };
 
 // Paints rows [begin, end) and returns the number of their nodata pixels. Any thread may call it, with a
