@@ -98,6 +98,14 @@ TEST_F(Compare, AViewCountsWhatItShows) {
   EXPECT_EQ(sky["area_m2"], 0);
   EXPECT_TRUE(sky["mean_m"].is_null());
   EXPECT_TRUE(sky["least"].is_null());
+  // From the plain, the slope of the pad hides its top; from above it does not.
+  const auto top_m2 = [&](const std::string& height_m) {
+    return compare({"a.vpe", "b.vpe", "--pose", "20.9,9.2,0,90,0,0", "--height", height_m, "--threshold",
+                    "99"})["changed_area_m2"]
+        .get<double>();
+  };
+  EXPECT_LT(top_m2("2"), 1e-3 * M_PI * kPad_m * kPad_m);
+  EXPECT_GT(top_m2("3000"), 0.95 * M_PI * kPad_m * kPad_m);
 }
 
 TEST_F(Compare, SwappedAndSame) {
