@@ -68,7 +68,10 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
 
 std::set<int> sources_of(const PlanetMeta& meta, const SampledLeaf& leaf) {
   if (meta.sources.size() == 1) return {0};
-  std::set<int> found(leaf.source.begin(), leaf.source.end());
+  std::set<int> found;
+  int last = -1;
+  for (const int source : leaf.source)
+    if (source != last) found.insert(last = source);
   found.erase(-1);
   return found;
 }

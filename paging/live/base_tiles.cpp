@@ -11,21 +11,21 @@ constexpr std::size_t kMeterBytesOfPost = 5 * sizeof(double);
 
 }  // namespace
 
-std::size_t BaseInner::bytes() const {
-  return sizeof(BaseInner) + (quanta.capacity() + mesh.height_q.capacity()) * sizeof(std::int32_t) +
+std::size_t BaseTile::bytes() const {
+  return sizeof(BaseTile) + (quanta.capacity() + mesh.height_q.capacity()) * sizeof(std::int32_t) +
          nodata.capacity() / 8 + mesh.mesh.vertices.capacity() * sizeof(lod::MeshVertex) +
          mesh.mesh.triangles.capacity() * sizeof(std::uint16_t);
 }
 
 BaseTiles::BaseTiles(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
-    : planet_(std::move(planet)), inner_(budget_bytes / 2), meters_(budget_bytes / 2) {}
+    : planet_(std::move(planet)), tiles_(budget_bytes / 2), meters_(budget_bytes / 2) {}
 
-std::shared_ptr<const BaseInner> BaseTiles::inner(const lod::TileKey& key) const {
-  return inner_.get(key, [&] {
+std::shared_ptr<const BaseTile> BaseTiles::tile(const lod::TileKey& key) const {
+  return tiles_.get(key, [&] {
     TileHeights heights = planet_->heights(key);
-    auto made = std::make_shared<const BaseInner>(
-        BaseInner{to_quanta(heights.posts.height_m, planet_->meta().quantum_m), std::move(heights.nodata),
-                  planet_->mesh(key, 0)});
+    auto made =
+        std::make_shared<const BaseTile>(BaseTile{to_quanta(heights.posts.height_m, planet_->meta().quantum_m),
+                                                  std::move(heights.nodata), planet_->mesh(key, 0)});
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });

@@ -13,8 +13,8 @@
 
 namespace paging {
 
-// Holds a tile with children.
-struct BaseInner {
+// Holds a tile with its first mesh.
+struct BaseTile {
   std::vector<std::int32_t> quanta;  // of its own posts
   std::vector<bool> nodata;          // empty: none
   PackedMesh mesh;
@@ -30,7 +30,8 @@ class BaseTiles {
 
   const PlanetFile& planet() const { return *planet_; }
 
-  std::shared_ptr<const BaseInner> inner(const lod::TileKey& key) const;
+  // Returns a tile that has a mesh: one with children, or a finest one of more than its full grid.
+  std::shared_ptr<const BaseTile> tile(const lod::TileKey& key) const;
   // Returns a meter of a finest tile, which measures what lies over it against the planet's surface.
   std::shared_ptr<const lod::GridMeter> meter(const lod::TileKey& leaf) const;
   // Returns what a build holds of a tile, except `lowest_m` of inner tiles. `coarser_neighbour_mask` is given, since the
@@ -39,7 +40,7 @@ class BaseTiles {
 
  private:
   std::shared_ptr<const PlanetFile> planet_;
-  mutable vpe::base::LruCache<lod::TileKey, BaseInner, lod::TileKeyHash> inner_;
+  mutable vpe::base::LruCache<lod::TileKey, BaseTile, lod::TileKeyHash> tiles_;
   mutable vpe::base::LruCache<lod::TileKey, lod::GridMeter, lod::TileKeyHash> meters_;
   mutable std::mutex mutex_;
   mutable std::map<lod::TileKey, std::set<int>> sources_;

@@ -13,6 +13,8 @@ namespace {
 // The meters raise what they find by their bound of how much a radius varies over a cell, about (cell angle) (1 + slope).
 // So are terms here, that a measurement never exceeds them.
 constexpr double kCellRaise = 4;
+// From here on the lines of tiles are even, so that finer grids have their diagonals too.
+constexpr int kFirstEvenLevel = 5;
 
 // Returns by how much a change of heights may grow between posts of a tile.
 double growth(const PlanetMeta& meta, const lod::TileKey& key, double min_m, double max_m) {
@@ -102,9 +104,10 @@ void put_inner(const lod::TileKey& key, const GridTile& tile, const PackedMesh& 
   store.put_tile(to_row(key, tile.node), payload);
 }
 
-// Returns the border vertices of a neighbour's mesh, in positions along the own edge.
-std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& next) {
+// Returns the border vertices of a neighbour's mesh, in positions along the own edge of a grid of `intervals`.
+std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& next, int intervals) {
   const int last = mesh.mesh.intervals;
+  const int step = intervals / last;  // 2 beside a finest tile
   std::vector<int> along;
   for (const lod::MeshVertex& v : mesh.mesh.vertices) {
     const bool on_edge = next.edge == lod::Edge::kWest    ? v.i == 0
@@ -113,7 +116,7 @@ std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& n
                                                           : v.j == last;
     if (!on_edge) continue;
     const int at = next.edge == lod::Edge::kWest || next.edge == lod::Edge::kEast ? v.j : v.i;
-    along.push_back(next.reversed ? last - at : at);
+    along.push_back(step * (next.reversed ? last - at : at));
   }
   std::sort(along.begin(), along.end());
   return along;
@@ -127,17 +130,29 @@ struct DividedMeters {
 
 }  // namespace
 
-GridTile make_grid_leaf(const PlanetMeta& meta, const SampledLeaf& leaf, const lod::GridMeter& below,
-                        TileStore& store) {
-  auto [node, payload] = pack_leaf(meta, leaf);
+GridTile make_grid_leaf(const PlanetMeta& meta, const BaseTiles& base, const SampledLeaf& leaf,
+                        const GroundGrid& ground, TileStore& store) {
+  const lod::TileKey& key = leaf.posts.key;
   const int n = leaf.posts.intervals;
+  auto [node, payload] = pack_leaf(meta, leaf);
   node.variants.push_back({{}, static_cast<std::uint32_t>(2 * n * n)});
-  store.put_tile(to_row(leaf.posts.key, node), payload);
-  GridTile tile{std::move(node),
-                leaf.quanta,
-                {},
-                below.measure(lod::FinePosts(leaf.posts, meta.radius_m)),
-                leaf.posts.key.level};
+  store.put_tile(to_row(key, node), payload);
+  const lod::TileInfo& was = base.planet().tree().deepest(key);
+  lod::ErrorTerms change;
+  if (was.key.level < kFirstEvenLevel) {
+    change = base.meter(was.key)->measure(lod::FinePosts(leaf.posts, meta.radius_m));
+  } else {
+    double shift_m = 0;
+    for (std::size_t p = 0; p < ground.height_m.size(); ++p)
+      shift_m = std::max(shift_m, std::abs(leaf.posts.height_m[p] - ground.height_m[p]));
+    shift_m *=
+        growth(meta, key, std::min(was.min_height_m, node.min_m), std::max(was.max_height_m, node.max_m));
+    // Posts on a border with a coarser tile lie on edges of twice the spacing.
+    const double spacing_m = lod::post_spacing_m(std::min(was.key.level, key.level - 1), n, meta.radius_m);
+    const double sagitta_m = facet_sagitta_m(spacing_m, meta.radius_m);
+    change = {shift_m + sagitta_m, sagitta_m, shift_m};
+  }
+  GridTile tile{std::move(node), leaf.quanta, {}, change, key.level};
   if (leaf.any_nodata) tile.nodata = leaf.nodata;
   return tile;
 }
@@ -145,7 +160,7 @@ GridTile make_grid_leaf(const PlanetMeta& meta, const SampledLeaf& leaf, const l
 GridTile make_grid_inner(const PlanetMeta& meta, const BaseTiles& base, const GridChildren& children,
                          const lod::TileKey& key, TileStore& store) {
   const int n = meta.tile.intervals();
-  const auto was = base.inner(key);
+  const auto was = base.tile(key);
   const lod::TileInfo& had = *base.planet().tree().find(key);
   GridTile tile = parent_of(children);
   tile.quanta = was->quanta;
@@ -170,7 +185,7 @@ GridTile make_grid_inner(const PlanetMeta& meta, const BaseTiles& base, const Gr
 }
 
 GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const GridChildren& children,
-                           const lod::TileKey& key, TileStore& store) {
+                           const lod::TileKey& key, const IsMade& is_made, TileStore& store) {
   const int n = meta.tile.intervals();
   GridTile tile = parent_of(children);
   tile.quanta.resize(static_cast<std::size_t>(meta.tile.post_count()));
@@ -180,8 +195,10 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
     std::vector<int>& border = borders[static_cast<std::size_t>(edge)];
     const lod::Neighbour next = lod::neighbour(key, edge);
     const lod::TileInfo* beside = base.planet().tree().find(next.key);
-    if (beside != nullptr && beside->has_children) {
-      border = vertices_across(base.inner(next.key)->mesh, next);
+    const bool has_mesh =
+        beside != nullptr && (beside->has_children || (beside->variants.size() > 1 && !is_made(next.key)));
+    if (has_mesh) {
+      border = vertices_across(base.tile(next.key)->mesh, next, 2 * n);
     } else {
       for (int a = 0; a <= 2 * n; a += 2) border.push_back(a);
     }

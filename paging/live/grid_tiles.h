@@ -1,14 +1,19 @@
 // Tiles of a patch without new meshes: full grids, and the planet's meshes with new heights.
 //
 // Their errors are bounds. Where the planet's tile has the terms E, its mesh M and the surface S, and the patch has M' and
-// S', then |M' - S'| <= |M' - M| + |M - S| + |S - S'|. The last is measured over each finest tile (lod::GridMeter of the
-// planet's posts against the new ones). For the first: M and M' have the same triangles, and over one the radius r of
-// vertices p with the radii r_v changes with each by dr / dr_v = l_v (|p_v| / |p|) (r / r_v)^2, where the l_v sum to 1. So
-// it is at most the largest change of a vertex times the ratio of |p| in the tile's chart and the squared ratio of its
-// radii.
+// S', then |M' - S'| <= |M' - M| + |M - S| + |S - S'|. For the first: M and M' have the same triangles, and over one the
+// radius r of vertices p with the radii r_v changes with each by dr / dr_v = l_v (|p_v| / |p|) (r / r_v)^2, where the l_v
+// sum to 1. So it is at most the largest change of a vertex times the ratio of |p| in the tile's chart and the squared ratio
+// of its radii. The same holds for the last over a finest tile: from level 5 on the facets of a finer grid divide those of
+// the planet, so that both surfaces are flat over them. Spheres over both grids differ by less than the sagitta of the
+// coarser one. Below level 5 lines are not even, and lod::GridMeter measures the planet's posts against the new ones.
 #pragma once
 
+#include <array>
+#include <functional>
+#include <map>
 #include <span>
+#include <vector>
 
 #include "lod/mesh/error_meter.h"
 #include "paging/live/base_tiles.h"
@@ -26,9 +31,9 @@ struct GridTile {
   int coarsest_level = 0;            // of the finest tiles below that the patch makes
 };
 
-// Stores a finest tile with its full grid alone. `below` measures the planet's finest tile that holds it.
-GridTile make_grid_leaf(const PlanetMeta& meta, const SampledLeaf& leaf, const lod::GridMeter& below,
-                        TileStore& store);
+// Stores a finest tile with its full grid alone. `ground` is that of the planet at its posts.
+GridTile make_grid_leaf(const PlanetMeta& meta, const BaseTiles& base, const SampledLeaf& leaf,
+                        const GroundGrid& ground, TileStore& store);
 
 // Holds the children of a tile: their nodes, and which of them the patch makes.
 struct GridChildren {
@@ -40,10 +45,12 @@ struct GridChildren {
 GridTile make_grid_inner(const PlanetMeta& meta, const BaseTiles& base, const GridChildren& children,
                          const lod::TileKey& key, TileStore& store);
 
-// Stores a tile that has no children in the planet. Its mesh is the grid of its own posts; on borders with tiles that have
-// children in the planet it has the vertices of their meshes. Its error terms are 0 until they have been measured.
+// Stores a tile that has no children in the planet. Its mesh is the grid of its own posts; on borders with tiles of the
+// planet that keep a mesh it has the vertices of that mesh. `is_made` says which tiles the patch makes. Its error terms
+// are 0 until they have been measured.
+using IsMade = std::function<bool(const lod::TileKey& key)>;
 GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const GridChildren& children,
-                           const lod::TileKey& key, TileStore& store);
+                           const lod::TileKey& key, const IsMade& is_made, TileStore& store);
 
 // Computes the errors of all tiles that have no children in the planet over finest tiles below them, given in Morton order.
 std::map<lod::TileKey, InnerTerms> measure_divided_tiles(const StoredTiles& stored, const lod::TileTree& planet,

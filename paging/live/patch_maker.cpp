@@ -56,9 +56,8 @@ class PatchJob {
   }
 
  private:
-  SampledLeaf sample(const lod::TileKey& key) const {
-    return changed_leaf(meta_, planet_.meta().sources.size(), *plan_.tiles, *inputs_.ground.grid(key), change_,
-                        key);
+  SampledLeaf sample(const lod::TileKey& key, const GroundGrid& ground) const {
+    return changed_leaf(meta_, planet_.meta().sources.size(), *plan_.tiles, ground, change_, key);
   }
 
   // Makes tiles that do not need each other.
@@ -110,6 +109,7 @@ class PatchJob {
   // Makes full grids, and the planet's meshes with new heights.
   void make_grids() {
     remember_made();
+    const IsMade is_made = [this](const lod::TileKey& key) { return is_made_.contains(key); };
     std::map<lod::TileKey, GridTile> tiles;
     const auto keep = [&](std::span<const lod::TileKey> keys, std::vector<GridTile> made) {
       for (std::size_t n = 0; n < keys.size(); ++n) {
@@ -118,8 +118,8 @@ class PatchJob {
       }
     };
     keep(plan_.leaves, make_each<GridTile>(plan_.leaves, [&](const lod::TileKey& key) {
-           const auto meter = inputs_.base.meter(planet_.tree().deepest(key).key);
-           return make_grid_leaf(meta_, sample(key), *meter, store_);
+           const auto ground = inputs_.ground.grid(key);
+           return make_grid_leaf(meta_, inputs_.base, sample(key, *ground), *ground, store_);
          }));
     for_each_level([&](std::span<const lod::TileKey> keys) {
       keep(keys, make_each<GridTile>(keys, [&](const lod::TileKey& key) {
@@ -132,7 +132,7 @@ class PatchJob {
              const lod::TileInfo* was = planet_.tree().find(key);
              return was != nullptr && was->has_children
                         ? make_grid_inner(meta_, inputs_.base, children, key, store_)
-                        : make_divided_tile(meta_, inputs_.base, children, key, store_);
+                        : make_divided_tile(meta_, inputs_.base, children, key, is_made, store_);
            }));
     });
     measure_in_chunks(plan_.leaves, [&](std::span<const lod::TileKey> leaves) {
@@ -147,7 +147,7 @@ class PatchJob {
       for (std::size_t n = 0; n < keys.size(); ++n) nodes_[keys[n]] = std::move(made[n]);
     };
     keep(plan_.leaves, make_each<Node>(plan_.leaves, [&](const lod::TileKey& key) {
-           return mesh_leaf(meshing_, sample(key), store_);
+           return mesh_leaf(meshing_, sample(key, *inputs_.ground.grid(key)), store_);
          }));
     for_each_level([&](std::span<const lod::TileKey> keys) {
       keep(keys,

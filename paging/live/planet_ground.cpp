@@ -1,6 +1,7 @@
 #include "paging/live/planet_ground.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "lod/tree/facet_mask.h"
@@ -13,6 +14,9 @@ namespace {
 
 // The rest holds grids.
 constexpr std::size_t kSurfaceDivisor = 4;
+// Part of a cell within which a place lies on an edge: rounding of a chart point is far smaller in cells of any level, and
+// finer posts are far away.
+constexpr double kOnEdge = 1e-6;
 
 // Holds a finest tile of the planet while places in it are asked for.
 struct HeldTile {
@@ -25,16 +29,19 @@ std::size_t interval_of(const std::vector<double>& lines, double x) {
   return static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, x) - lines.begin() - 1);
 }
 
+// Posts of finer grids often lie on the edges of facets. Rounding must not move them into a facet beside.
 bool is_nodata(const SurfaceTile& tile, const mars::ChartPoint& point) {
   if (tile.data.nodata.empty()) return false;
   const auto fraction = [](const std::vector<double>& lines, std::size_t n, double x) {
-    return std::clamp((x - lines[n]) / (lines[n + 1] - lines[n]), 0.0, 1.0);
+    const double f = std::clamp((x - lines[n]) / (lines[n + 1] - lines[n]), 0.0, 1.0);
+    return std::abs(f - std::round(f)) < kOnEdge ? std::round(f) : f;
   };
   const std::size_t i = interval_of(tile.lines.u, point.u);
   const std::size_t j = interval_of(tile.lines.v, point.v);
   const auto side = static_cast<std::size_t>(tile.data.posts.side());
-  return lod::is_flagged(tile.data.nodata, j * side + i, side, fraction(tile.lines.u, i, point.u),
-                         fraction(tile.lines.v, j, point.v));
+  const double x = fraction(tile.lines.u, i, point.u);
+  const double y = fraction(tile.lines.v, j, point.v);
+  return lod::is_flagged(tile.data.nodata, j * side + i, side, x, std::abs(x - y) < kOnEdge ? x : y);
 }
 
 // Returns the source of the nearest post. Files before format 1.3 do not tell it in tiles of several.

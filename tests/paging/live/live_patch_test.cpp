@@ -175,7 +175,7 @@ TEST_F(LivePatch, NothingElseChanges) {
         ++same;
       }
     }
-    EXPECT_GT(same, 20000);
+    EXPECT_GT(same, 5000);
   }
 }
 
@@ -271,9 +271,9 @@ TEST_F(LivePatch, TenThousandStackedReliefs) {
 
 TEST_F(LivePatch, NodataStaysNodata) {
   const mars::LonLat place = live_places()[5];
-  const glm::dvec3 hole = mars::direction({place.lon_deg + 0.25, place.lat_deg});
+  const glm::dvec3 hole = mars::direction({place.lon_deg + 0.35, place.lat_deg});
   const auto height = [&](const glm::dvec3& d) {
-    return glm::length(d - hole) < 0.004 ? std::numeric_limits<double>::quiet_NaN()
+    return glm::length(d - hole) < 0.003 ? std::numeric_limits<double>::quiet_NaN()
                                          : test_support::whole_quanta(d);
   };
   const Planet planet = build_live(*dir_ / "nodata.vpe", height);
@@ -311,9 +311,17 @@ TEST_F(LivePatch, PatchedPlanetsCanBePatched) {
     const Planet twice = paging::with_reliefs(once, second, options);
     expect_sound(*twice);
     EXPECT_EQ(twice->meta().sources.size(), 3U);
-    const glm::dvec3 middle = mars::direction(live_places()[0]);
-    EXPECT_LT(paging::Surface(twice, 1 << 24).at(middle).height_m,
-              paging::Surface(once, 1 << 24).at(middle).height_m - 100);
+    const paging::PatchMaker ground(once);
+    const relief::Relief relief =
+        relief::place(second, planet_->radius_m(), [](const glm::dvec3&) { return 0.0; });
+    int changed = 0;
+    for (const auto& post : test_support::finest_posts(*twice, {mars::direction(live_places()[0]), 0.003})) {
+      const double before_m = ground.ground_m(post.direction);
+      const double expected_m = relief.height_m(post.direction, before_m);
+      ASSERT_NEAR(post.height_m, expected_m, 0.5 * kLiveQuantum_m + 1e-6);
+      changed += expected_m != before_m ? 1 : 0;
+    }
+    EXPECT_GT(changed, 50);
   }
 }
 
