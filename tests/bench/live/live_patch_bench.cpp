@@ -1,5 +1,5 @@
 // Time of patches that are made in memory, and of frames of animated ground against frames of still ground.
-// docs/measurements/patches.md has the figures.
+// docs/measurements/build.md has the figures.
 //
 //   live_patch_bench PLANET.vpe LON LAT [POSTS] [WIDTHxHEIGHT] [FRAMES]
 //
