@@ -1,14 +1,15 @@
 #include "paging/live/patch_maker.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include "paging/live/grid_tiles.h"
 #include "paging/live/memory_tiles.h"
 #include "paging/live/patch_plan.h"
-#include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
 
 namespace paging {
