@@ -46,9 +46,19 @@ mars::Cap cap_of(std::span<const glm::dvec3> directions) {
   const double length = glm::length(middle);
   if (!(length > 0.5 * static_cast<double>(directions.size()))) return {{1, 0, 0}, mars::kPi};
   middle /= length;
-  double radius_rad = 0;
-  for (const glm::dvec3& d : directions) radius_rad = std::max(radius_rad, mars::angle_between_rad(middle, d));
-  return {middle, radius_rad + 1e-14};
+  // The farthest in a straight line is the farthest on the sphere.
+  glm::dvec3 farthest = middle;
+  double most = 0;
+  for (const glm::dvec3& d : directions) {
+    const glm::dvec3 away = d - middle;
+    const double square = glm::dot(away, away);
+    if (square > most) {
+      most = square;
+      farthest = d;
+    }
+  }
+  // Squares of nearly equal lengths may be in the wrong order by their rounding.
+  return {middle, mars::angle_between_rad(middle, farthest) * (1 + 1e-15) + 1e-14};
 }
 
 }  // namespace
