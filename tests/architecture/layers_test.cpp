@@ -84,7 +84,7 @@ const std::vector<Layer>& layers() {
       {"paging/surface", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
       {"paging/shading", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet", "paging/surface"}},
       {"paging", "paging", {"vpe/base"}},
-      {"scripts", "scripts", {"vpe/base", "mars", "vpe/core"}},
+      {"scripts", "scripts", {"vpe/base", "mars", "vpe/core", "relief"}},
       {"vpe/overlay", "vpe::overlay", {"vpe/base", "mars", "vpe/core"}, false, false, true},
       {"vpe/warp", "vpe::warp", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/gl", "vpe::gl", {"vpe/base", "mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
