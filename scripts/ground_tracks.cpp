@@ -207,6 +207,10 @@ GroundTracks::GroundTracks(const Flight& flight, double radius_m) {
     patches_.push_back({file, times_s.front(), held_spline(times_s, values, end_s)});
   }
   sort_unique(times_s_);
+  if (empty()) return;
+  text_ = format_number(radius_m) + end_line(end_s);
+  for (const ReliefCommand& line : flight.reliefs) text_ += to_line(line);
+  for (const PatchCommand& line : flight.patches) text_ += to_line(line);
 }
 
 GroundState GroundTracks::at(double time_s) const {
@@ -228,16 +232,17 @@ GroundState GroundTracks::at(double time_s) const {
   return state;
 }
 
-std::vector<std::string> GroundTracks::relief_names() const {
-  std::vector<std::string> names;
-  for (const Track& track : reliefs_) names.push_back(track.name);
-  return names;
-}
-
 std::vector<std::string> GroundTracks::files() const {
   std::vector<std::string> files;
   for (const Patch& patch : patches_) files.push_back(patch.file);
   return files;
+}
+
+std::vector<std::string> GroundTracks::names() const {
+  std::vector<std::string> names;
+  for (const Patch& patch : patches_) names.push_back("patch " + patch.file);
+  for (const Track& track : reliefs_) names.push_back("relief " + track.name);
+  return names;
 }
 
 }  // namespace scripts

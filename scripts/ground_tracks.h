@@ -58,15 +58,19 @@ class GroundTracks {
   // Returns true if the ground never changes.
   bool empty() const { return reliefs_.empty() && patches_.empty(); }
 
+  // Returns true if the lines are the same, so that all states are.
+  bool operator==(const GroundTracks& other) const { return text_ == other.text_; }
+
   // Returns the ground at a time. Leaves out reliefs that are hidden or of no strength, and patches of mix 0.
   GroundState at(double time_s) const;
 
   // Returns the times of all lines, ascending, each once.
   const std::vector<double>& times_s() const { return times_s_; }
 
-  // Return the names of all reliefs, and the files of all patches, in the order of their first lines.
-  std::vector<std::string> relief_names() const;
+  // Returns the files of all patches, in the order of their first lines.
   std::vector<std::string> files() const;
+  // Returns what changes the ground, such as "patch b.vpe" and "relief pit": patches, then reliefs, in that order.
+  std::vector<std::string> names() const;
 
  private:
   // Holds one number of a relief at the lines that give it.
@@ -108,6 +112,7 @@ class GroundTracks {
   std::vector<Track> reliefs_;
   std::vector<Patch> patches_;
   std::vector<double> times_s_;
+  std::string text_;  // lines, radius and end
 };
 
 }  // namespace scripts

@@ -125,6 +125,11 @@ std::span<const Command> up_to(const std::vector<Command>& commands, double time
   return {commands.begin(), end};
 }
 
+std::shared_ptr<const GroundTracks> ground_of(const Flight& flight, double radius_m) {
+  if (flight.reliefs.empty() && flight.patches.empty()) return nullptr;
+  return std::make_shared<const GroundTracks>(flight, radius_m);
+}
+
 double half_fov_rad(double fov_deg) { return 0.5 * fov_deg * mars::kRadiansPerDegree; }
 
 // Adds to each command what those before it say.
@@ -173,7 +178,7 @@ Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_h
                           duration_s_)),
       interests_(flight.interests),
       tracks_(object_tracks(flight.objects)),
-      ground_(flight, radius_m),
+      ground_(ground_of(flight, radius_m)),
       views_(accumulated(flight.views)),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),

@@ -80,8 +80,9 @@ class Path {
   // Returns how the flight moves objects of the scene, by ascending names; null if it moves none.
   const std::shared_ptr<const std::vector<vpe::core::ObjectTrack>>& tracks() const { return tracks_; }
 
-  // Returns how the flight changes the ground.
-  const GroundTracks& ground() const { return ground_; }
+  // Returns how the flight changes the ground; null if it does not.
+  const std::shared_ptr<const GroundTracks>& ground() const { return ground_; }
+  GroundState ground_at(double time_s) const { return ground_ ? ground_->at(time_s) : GroundState(); }
 
   // Returns the regions of interest given up to and including a time.
   std::span<const InterestCommand> interests(double time_s) const;
@@ -107,7 +108,7 @@ class Path {
   std::vector<HeadCommand> heads_;  // likewise
   std::vector<InterestCommand> interests_;
   std::shared_ptr<const std::vector<vpe::core::ObjectTrack>> tracks_;
-  GroundTracks ground_;
+  std::shared_ptr<const GroundTracks> ground_;
   std::vector<ViewCommand> views_;  // each with what those before it say
   std::vector<Fov> fovs_;           // held at both ends; empty if no view has one
   SphericalSpline<glm::dvec3> place_;

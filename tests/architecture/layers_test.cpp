@@ -127,7 +127,7 @@ const std::vector<Layer>& layers() {
       {"vpe/report", "vpe::report", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/window/workers",
        "vpe::window",
-       {"vpe/base", "mars", "vpe/core", "paging", "vpe/explore", "vpe/warp"}},
+       {"vpe/base", "mars", "vpe/core", "paging", "scripts", "vpe/explore", "vpe/warp"}},
       {"vpe/window/ui", "vpe::window", {"vpe/base", "vpe/core"}, true},
       {"vpe/window/marks",
        "vpe::window",

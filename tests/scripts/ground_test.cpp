@@ -116,7 +116,7 @@ TEST(GroundTracks, AReliefIsThereFromItsLineOn) {
     EXPECT_EQ(pit.radius_m, 100);
     EXPECT_EQ(pit.depth_m, 20);
   }
-  EXPECT_EQ(ground.relief_names(), std::vector<std::string>{"pit"});
+  EXPECT_EQ(ground.names(), std::vector<std::string>{"relief pit"});
   EXPECT_EQ(ground.times_s(), std::vector<double>{1});
 }
 
@@ -238,6 +238,8 @@ TEST(GroundTracks, StatesDoNotDependOnTheOrderOfQuestions) {
   for (int k = 0; k < 90; ++k) forwards.push_back(ground.at(0.1 * k));
   for (int k = 89; k >= 0; --k) EXPECT_EQ(ground.at(0.1 * k), forwards[static_cast<std::size_t>(k)]);
   const GroundTracks again(*parse_flight(to_text(flight), "F").flight, mars::kMarsRadius_m);
+  EXPECT_EQ(again, ground);
+  EXPECT_FALSE(again == GroundTracks());
   for (int k = 0; k < 90; ++k)
     EXPECT_EQ(lines_of(again.at(0.1 * k)), lines_of(forwards[static_cast<std::size_t>(k)]));
 }
@@ -309,8 +311,11 @@ TEST(GroundTracks, ReliefsThatReachTooFarAreRefused) {
 
 TEST(GroundTracks, BelongToThePath) {
   const Path path(flight_of(std::string("at 1 ") + kPit), mars::kMarsRadius_m, {});
-  EXPECT_FALSE(path.ground().empty());
-  EXPECT_EQ(path.ground().at(1).reliefs.size(), 1U);
+  ASSERT_NE(path.ground(), nullptr);
+  EXPECT_EQ(path.ground()->at(1).reliefs.size(), 1U);
+  EXPECT_EQ(path.ground_at(1), path.ground()->at(1));
+  EXPECT_EQ(Path(flight_of("at 2 end\n"), mars::kMarsRadius_m, {}).ground(), nullptr);
+  EXPECT_TRUE(Path(flight_of("at 2 end\n"), mars::kMarsRadius_m, {}).ground_at(1).empty());
   const auto rising = [](mars::LonLat, double exaggeration, double time_s) { return exaggeration * time_s; };
   const Flight flight = flight_of("at 2 end\n");
   const auto lowest = lowest_clearance(Path(flight, mars::kMarsRadius_m, {}), {1, 1}, rising);

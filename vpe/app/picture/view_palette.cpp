@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "paging/planet/planet_user.h"
 #include "paging/shading/terrain_shader.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/base/nice_ticks.h"
@@ -84,6 +85,12 @@ ViewPalette::ViewPalette(std::shared_ptr<const paging::PlanetFile> planet, const
           {.memory_bytes = std::min(memory_bytes(common) / 4, kMostSampleBytes), .threads = common.threads})) {}
 
 ViewPalette::~ViewPalette() = default;
+
+void ViewPalette::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  if (planet == planet_) return;
+  paging::change_planet(*rays_, planet);
+  planet_ = std::move(planet);
+}
 
 void ViewPalette::add(const core::DrawRequest& request) {
   is_circle_ = request.settings.colour == core::Colour::kAspect;
