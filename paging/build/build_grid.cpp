@@ -79,7 +79,7 @@ std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m) {
 }
 
 lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key) {
-  const auto quanta = decode_heights(stored.writer.heights(key), stored.meta.tile.posts());
+  const auto quanta = decode_heights(stored.store.heights(key), stored.meta.tile.posts());
   lod::Posts posts{key, stored.meta.tile.intervals(), std::vector<double>(quanta.size())};
   std::transform(quanta.begin(), quanta.end(), posts.height_m.begin(),
                  [q = stored.meta.quantum_m](std::int32_t n) { return n * q; });

@@ -38,6 +38,21 @@ struct SampledLeaf {
 };
 SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key);
 
+// Rounds the heights of posts as sampled to quanta, and moves those on borders with coarser neighbours onto their edges.
+// Sets quanta and border_step.
+void round_and_constrain(const PlanetMeta& meta, SampledLeaf& leaf);
+
+// Holds what is stored of a finest tile. Its meshes are missing: they are of mesh_leaf(), or the tile has its full grid
+// alone.
+struct LeafTile {
+  Node node;
+  TilePayload payload;
+};
+LeafTile pack_leaf(const PlanetMeta& meta, const SampledLeaf& leaf);
+
+// Meshes and stores a finest tile that has been sampled.
+Node mesh_leaf(const MeshInputs& meshing, const SampledLeaf& leaf, TileStore& store);
+
 // Makes the mesh of an inner tile over its children's posts.
 PackedMesh mesh_inner(const MeshInputs& meshing, const lod::Posts& posts);
 

@@ -120,7 +120,7 @@ Node build_inner(const MeshInputs& meshing, const StoredTiles& stored, const lod
     const lod::TileKey child = lod::child(key, c);
     const lod::Posts fine = read_posts(stored, child);
     put_child(posts, c, fine);
-    put_child_mask(nodata, c, stored.writer.nodata(child), static_cast<std::size_t>(n + 1));
+    put_child_mask(nodata, c, stored.store.nodata(child), static_cast<std::size_t>(n + 1));
     const Node& below = stored.nodes.at(child);
     node.sources.insert(below.sources.begin(), below.sources.end());
     node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
@@ -136,7 +136,7 @@ Node build_inner(const MeshInputs& meshing, const StoredTiles& stored, const lod
   const PackedMesh mesh = mesh_inner(meshing, posts);
   payload.meshes.push_back(encode_mesh(mesh));
   node.variants.push_back({{}, static_cast<std::uint32_t>(mesh.mesh.triangle_count())});
-  stored.writer.put_tile(to_row(key, node), payload);
+  stored.store.put_tile(to_row(key, node), payload);
   return node;
 }
 

@@ -5,6 +5,7 @@
 #include "paging/build/build_grid.h"
 #include "paging/build/nodata_fill.h"
 #include "paging/build/source_heights.h"
+#include "paging/planet/tile_sources.h"
 #include "vpe/base/mutation.h"
 #include "vpe/core/appearance/nodata_pattern.h"
 #include "vpe/core/image/image.h"
@@ -65,8 +66,8 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
   }
 }
 
-std::set<int> sources_of(const SampleInputs& sampling, const SampledLeaf& leaf) {
-  if (sampling.meta.sources.size() == 1) return {0};
+std::set<int> sources_of(const PlanetMeta& meta, const SampledLeaf& leaf) {
+  if (meta.sources.size() == 1) return {0};
   std::set<int> found(leaf.source.begin(), leaf.source.end());
   found.erase(-1);
   return found;
@@ -98,6 +99,12 @@ SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
     leaf.nodata[p] = leaf.any_nodata = true;
   }
   if (leaf.any_nodata) fill_nodata(sampling, key, levels, heights);
+  round_and_constrain(meta, leaf);
+  return leaf;
+}
+
+void round_and_constrain(const PlanetMeta& meta, SampledLeaf& leaf) {
+  std::vector<double>& heights = leaf.posts.height_m;
   leaf.quanta = to_quanta(heights, meta.quantum_m);
   for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = leaf.quanta[p] * meta.quantum_m;
   for (const lod::Edge edge : lod::kEdges) {
@@ -105,28 +112,38 @@ SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
     lod::constrain_edge(leaf.posts, leaf.lines, edge, 2, meta.radius_m);
     leaf.border_step[static_cast<std::size_t>(edge)] = 2;
   }
-  return leaf;
 }
 
-Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetWriter& writer,
-                const lod::TileKey& key) {
-  const PlanetMeta& meta = sampling.meta;
-  const int n = meta.tile.intervals();
-  const SampledLeaf leaf = sample_leaf(sampling, key);
+LeafTile pack_leaf(const PlanetMeta& meta, const SampledLeaf& leaf) {
   const lod::Posts& posts = leaf.posts;
-  Node node;
+  LeafTile tile;
+  Node& node = tile.node;
   node.coarser_neighbour_mask = leaf.coarser_neighbour_mask;
-  node.sources = sources_of(sampling, leaf);
-  TilePayload payload;
-  payload.heights = encode_heights(leaf.quanta, n + 1);
+  node.sources = sources_of(meta, leaf);
+  TilePayload& payload = tile.payload;
+  payload.heights = encode_heights(leaf.quanta, posts.side());
   if (leaf.any_nodata) payload.nodata = encode_mask(leaf.nodata);
   payload.origin = encode_origin(leaf.source, {node.sources.begin(), node.sources.end()});
   const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
   node.min_m = *low;
-  node.lowest_m = *low - facet_sagitta_m(lod::post_spacing_m(key.level, n, meta.radius_m), meta.radius_m);
+  node.lowest_m = *low - facet_sagitta_m(lod::post_spacing_m(posts.key.level, posts.intervals, meta.radius_m),
+                                         meta.radius_m);
   node.max_m = *high;
   node.slope = lod::steepest_slope(posts, leaf.lines, meta.radius_m);
+  return tile;
+}
 
+Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, TileStore& store,
+                const lod::TileKey& key) {
+  return mesh_leaf(meshing, sample_leaf(sampling, key), store);
+}
+
+Node mesh_leaf(const MeshInputs& meshing, const SampledLeaf& leaf, TileStore& store) {
+  const PlanetMeta& meta = meshing.meta;
+  const lod::Posts& posts = leaf.posts;
+  const lod::TileKey& key = posts.key;
+  const int n = posts.intervals;
+  auto [node, payload] = pack_leaf(meta, leaf);
   const auto mesher = meshing.meshers.acquire();
   const auto full = static_cast<std::uint32_t>(2 * n * n);
   const lod::FinePosts fine(posts, meta.radius_m);
@@ -148,7 +165,7 @@ Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetW
   for (std::size_t v = node.variants.size() - 1; v > 0; --v) {
     node.variants[v - 1].terms.include(node.variants[v].terms);
   }
-  writer.put_tile(to_row(key, node), payload);
+  store.put_tile(to_row(key, node), payload);
   return node;
 }
 

@@ -24,7 +24,7 @@ std::unique_ptr<Meters> meters_of(const StoredTiles& stored, const SharedAncesto
   };
   if (const auto shared = shared_ancestors.find(key); shared != shared_ancestors.end())
     return meters(shared->second.mesh, shared->second.posts);
-  return meters(decode_mesh(stored.writer.mesh(key, 0), mesh_intervals(stored.meta.tile, true)),
+  return meters(decode_mesh(stored.store.mesh(key, 0), mesh_intervals(stored.meta.tile, true)),
                 read_posts(stored, key));
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "paging/build/build_steps.h"
+#include "paging/planet/tile_sources.h"
 
 namespace paging {
 

@@ -1,4 +1,4 @@
-// Steps of a build, one tile each. Used by the builder and by merging alone. Any number of threads may run a
+// Steps of a build, one tile each. Used by the builder, by merging and by patches in memory. Any number of threads may run a
 // step for different tiles at once.
 //
 // Each step takes only what it needs: SampleInputs where sources are sampled, MeshInputs where posts are
@@ -13,8 +13,8 @@
 
 #include "lod/mesh/mesh.h"
 #include "paging/build/builder.h"
-#include "paging/build/planet_writer.h"
 #include "paging/plan/build_plan.h"
+#include "paging/planet/tile_store.h"
 #include "vpe/base/object_pool.h"
 
 namespace paging {
@@ -69,12 +69,12 @@ struct MeshInputs {
 
 struct StoredTiles {
   const PlanetMeta& meta;
-  PlanetWriter& writer;
+  TileStore& store;
   const Nodes& nodes;  // of all tiles that are read
 };
 
 // Samples, meshes and stores a finest tile.
-Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetWriter& writer,
+Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, TileStore& store,
                 const lod::TileKey& key);
 
 // Takes an inner tile's posts from its children, which must be stored, and meshes and stores it. Its error

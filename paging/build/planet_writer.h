@@ -18,6 +18,7 @@
 #include "paging/planet/planet_meta.h"
 #include "paging/planet/tile_payload.h"
 #include "paging/planet/tile_sources.h"
+#include "paging/planet/tile_store.h"
 
 namespace paging {
 
@@ -32,7 +33,7 @@ namespace paging {
 //   writer.put_tile(row, payload);
 //   writer.seal(meta);
 //   writer.publish(meta);
-class PlanetWriter {
+class PlanetWriter : public TileStore {
  public:
   // `fingerprint` is everything that the content is a function of, as text: two builds with equal fingerprints
   // make equal tiles. `commit_s` is the time between commits: a build that is killed loses less when it is
@@ -42,7 +43,7 @@ class PlanetWriter {
   PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0,
                const PatchStart* patch = nullptr);
   // Without publish(), keeps the .part file, or removes it when it holds no tiles or after discard().
-  ~PlanetWriter();
+  ~PlanetWriter() override;
   PlanetWriter(const PlanetWriter&) = delete;
   PlanetWriter& operator=(const PlanetWriter&) = delete;
 
@@ -55,7 +56,7 @@ class PlanetWriter {
   std::vector<LevelSummary> levels(std::size_t posts);  // as summarize_levels()
 
   // Store a tile or image tile, whole or not at all.
-  void put_tile(const NodeRow& row, const TilePayload& payload);
+  void put_tile(const NodeRow& row, const TilePayload& payload) override;
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
   // Stores an intermediate result by number; replaces an earlier one. publish() drops checkpoints, except that
   // a shard keeps those with numbers below 0.
@@ -67,9 +68,9 @@ class PlanetWriter {
   void replace_nodes(std::span<const NodeRow> rows);
 
   // Read back what put_tile() stored. Throw DatabaseError also when it is damaged.
-  Bytes heights(const lod::TileKey& key);
-  Bytes nodata(const lod::TileKey& key);  // empty when every post has data
-  Bytes mesh(const lod::TileKey& key, int variant);
+  Bytes heights(const lod::TileKey& key) override;
+  Bytes nodata(const lod::TileKey& key) override;
+  Bytes mesh(const lod::TileKey& key, int variant) override;
 
   // Fills in identity and program, writes meta and closes the .part file. After that it can be opened for
   // reading, and nothing more can be stored.

@@ -53,7 +53,8 @@ struct MadePatch {
 class PatchMaker {
  public:
   // Keeps at most about `budget_bytes` of the planet's ground. Smaller: it is sampled again more often.
-  explicit PatchMaker(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes = std::size_t{256} << 20);
+  explicit PatchMaker(std::shared_ptr<const PlanetFile> planet,
+                      std::size_t budget_bytes = std::size_t{256} << 20);
   ~PatchMaker();
   PatchMaker(PatchMaker&&) noexcept;
   PatchMaker& operator=(PatchMaker&&) noexcept;

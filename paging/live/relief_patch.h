@@ -16,12 +16,13 @@
 namespace paging {
 
 // Returns the change that reliefs make. `name` is the name of the source that posts of reliefs have.
-std::shared_ptr<const GroundChange> relief_change(relief::Relief relief, std::string name = "reliefs");
+std::shared_ptr<const GroundChange> relief_change(relief::Relief relief, const std::string& name = "reliefs");
 
 // Lays reliefs over one planet, one state after the other. Any number of threads may use it.
 class ReliefPatcher {
  public:
-  explicit ReliefPatcher(std::shared_ptr<const PlanetFile> base, std::size_t budget_bytes = std::size_t{256} << 20)
+  explicit ReliefPatcher(std::shared_ptr<const PlanetFile> base,
+                         std::size_t budget_bytes = std::size_t{256} << 20)
       : maker_(std::move(base), budget_bytes) {}
 
   const std::shared_ptr<const PlanetFile>& base() const { return maker_.planet(); }

@@ -72,6 +72,22 @@ BuildPlan::BuildPlan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leave
   }
 }
 
+BuildPlan::BuildPlan(const BuildPlan& coarser, std::span<const lod::TileKey> divided)
+    : inner_set_(coarser.inner_set_), inner_(coarser.inner_) {
+  for (const lod::TileKey& key : divided) split(key);
+  balance();
+  for (const lod::TileKey& leaf : coarser.leaves_) {
+    std::vector<lod::TileKey> open{leaf};
+    while (!open.empty()) {
+      const lod::TileKey key = open.back();
+      open.pop_back();
+      (is_inner(key) ? inner_ : leaves_).push_back(key);
+      for (int c = 0; c < 4 && is_inner(key); ++c) open.push_back(lod::child(key, c));
+    }
+  }
+  sort();
+}
+
 void BuildPlan::sort() {
   for (const lod::TileKey& key : leaves_) finest_level_ = std::max(finest_level_, key.level);
   std::sort(leaves_.begin(), leaves_.end(), morton_less);

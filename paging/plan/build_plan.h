@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <unordered_set>
 #include <vector>
 
@@ -36,6 +37,9 @@ class BuildPlan {
   // Makes the tree that has these finest tiles, in any order. Throws std::runtime_error when they do not cover
   // each place of the planet exactly once.
   explicit BuildPlan(std::vector<lod::TileKey> leaves);
+
+  // Makes the tree of another one in which these tiles have children, and all that then must have them too.
+  BuildPlan(const BuildPlan& coarser, std::span<const lod::TileKey> divided);
 
   const std::vector<lod::TileKey>& leaves() const { return leaves_; }  // face by face, in Morton order
   const std::vector<lod::TileKey>& inner() const { return inner_; }    // deepest first, else as leaves()
