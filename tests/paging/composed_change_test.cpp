@@ -26,7 +26,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Turns a height h into factor * h + added on the northern hemisphere.
 class Linear final : public GroundChange {
  public:
-  Linear(double factor, double added, double spacing_m) : factor_(factor), added_(added), spacing_m_(spacing_m) {}
+  Linear(double factor, double added, double spacing_m)
+      : factor_(factor), added_(added), spacing_m_(spacing_m) {}
 
   std::vector<mars::SourceInfo> infos() const override {
     mars::SourceInfo info;
@@ -84,7 +85,8 @@ TEST(ComposedChange, APartMakesAShareOfTheChange) {
 
 TEST(ComposedChange, SharesThatAreNoneAreRefused) {
   const auto whole = std::make_shared<const Linear>(3, 10, 50);
-  for (const double share : {-0.1, 1.1, kNan}) EXPECT_THROW(partial_change(whole, share), std::invalid_argument);
+  for (const double share : {-0.1, 1.1, kNan})
+    EXPECT_THROW(partial_change(whole, share), std::invalid_argument);
   EXPECT_THROW(partial_change(nullptr, 1), std::invalid_argument);
   EXPECT_THROW(changes_in_order({whole, nullptr}), std::invalid_argument);
 }
@@ -117,16 +119,16 @@ TEST(PlanetChangeOfGround, IsTheOtherPlanetWhereItDiffers) {
   EXPECT_FALSE(change->touches({-kPatched, 0.001}));
   EXPECT_TRUE(std::isinf(change->spacing_in({-kPatched, 0.001})));
   EXPECT_LT(change->spacing_in({kPatched, 0.001}),
-            lod::post_spacing_m(base->tree().deepest(lod::tile_at(mars::chart_point(kPatched), lod::kMaxLevel)).key.level,
-                                base->meta().tile.intervals(), base->radius_m()));
+            lod::post_spacing_m(
+                base->tree().deepest(lod::tile_at(mars::chart_point(kPatched), lod::kMaxLevel)).key.level,
+                base->meta().tile.intervals(), base->radius_m()));
   const paging::Surface before(base, std::size_t{16} << 20);
   const paging::Surface after(raised, std::size_t{16} << 20);
   Random random(4);
   double largest_m = 0;
   for (int n = 0; n < 500; ++n) {
-    const glm::dvec3 direction = n % 2 == 0
-                                     ? random.direction()
-                                     : glm::normalize(kPatched + kPatchedReach_rad * random.direction());
+    const glm::dvec3 direction =
+        n % 2 == 0 ? random.direction() : glm::normalize(kPatched + kPatchedReach_rad * random.direction());
     const double was_m = before.at(direction).height_m;
     const double is_m = after.at(direction).height_m;
     largest_m = std::max(largest_m, std::abs(is_m - was_m));

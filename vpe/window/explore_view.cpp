@@ -54,10 +54,10 @@ void ExploreWindow::request_image() {
     for (const std::string& line : scripts::lines_of(followed->ground()->at(objects_.time_s())))
       ground += "\n" + line;
   }
-  const std::string state =
-      std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects +
-      ground;
+  const std::string state = std::string(core::to_string(chosen.drawn_by)) +
+                            (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
+                            base::format_number(chosen.eye_base_m) + " " +
+                            base::format_number(chosen.convergence_m) + objects + ground;
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;

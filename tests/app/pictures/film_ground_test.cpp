@@ -24,9 +24,11 @@ class FilmGround : public AppTest, public ::testing::WithParamInterface<const ch
            lines + "at 2 end\n";
   }
   static std::string growing(const std::string& end = "radius=180000 depth=15000") {
-    return flight(std::string("at 0.5 relief \"the pit\" ") + kPit + "\nat 1.5 relief \"the pit\" " + end + "\n");
+    return flight(std::string("at 0.5 relief \"the pit\" ") + kPit + "\nat 1.5 relief \"the pit\" " + end +
+                  "\n");
   }
-  json fly(const std::string& output, const Words& more = {}, const std::string& flight_file = "f.flight") const {
+  json fly(const std::string& output, const Words& more = {},
+           const std::string& flight_file = "f.flight") const {
     Words words{"fly", flight_file, planet().string(), "-o", output, "--backend", GetParam(), "--json"};
     words.insert(words.end(), more.begin(), more.end());
     const Result result = vpe(words);
@@ -111,9 +113,11 @@ TEST_P(FilmGround, OnlyChangedFramesAreMadeAgain) {
 }
 
 TEST_P(FilmGround, FilesChangeItToo) {
-  const std::string works = "version = 1\n[[relief]]\nkind = \"crater\"\nlon = -74\nlat = -11\nradius_m = 120000\n";
+  const std::string works =
+      "version = 1\n[[relief]]\nkind = \"crater\"\nlon = -74\nlat = -11\nradius_m = 120000\n";
   write_text(dir_ / "works.relief.toml", works + "depth_m = 9000\n");
-  write_text(dir_ / "f.flight", flight("at 0 patch works.relief.toml mix=0\nat 1 patch works.relief.toml mix=1\n"));
+  write_text(dir_ / "f.flight",
+             flight("at 0 patch works.relief.toml mix=0\nat 1 patch works.relief.toml mix=1\n"));
   write_text(dir_ / "relief.flight", flight(std::string("at 0 relief pit ") + kPit + "\n"));
   const json film = fly("film");
   EXPECT_EQ(film["ground"], json({"patch works.relief.toml"}));
@@ -156,13 +160,14 @@ TEST_P(FilmGround, WhatCannotBeDrawnIsNamedFirst) {
   };
   expect("at 1 patch absent.vpe mix=1\n", {"f.flight: a patch cannot be used", "absent.vpe"});
   expect("at 1 relief pit kind=crater lon=1 lat=2 radius=-3\n", {"f.flight:5: ", "radius_m"});
-  expect("at 1 relief pit kind=crater lon=1 lat=2 radius=9e6\n", {"f.flight: the relief \"pit\" at 1 s: it reaches"});
+  expect("at 1 relief pit kind=crater lon=1 lat=2 radius=9e6\n",
+         {"f.flight: the relief \"pit\" at 1 s: it reaches"});
   // The camera stands in the mountain that rises.
-  expect("at 1 relief hill kind=pad lon=-74 lat=-17 radius=90000 rise=390000\n", {"below the ground at"});
+  expect("at 1 relief hill kind=pad lon=-74 lat=-17 radius=90000 rise=410000\n", {"below the ground at"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, FilmGround, testing::Values("polygon", "ray"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& made) { return std::string(made.param); });
 
 }  // namespace
 }  // namespace app_test

@@ -87,12 +87,12 @@ class FilmMaker {
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<CarriedDrawer> drawer_;  // of renderer_, for this gap and bound
   std::pair<double, double> drawer_px_;
-  std::shared_ptr<const paging::PlanetFile> planet_;   // of renderer_ and drawer_; null: without changes
-  std::optional<std::int64_t> key_;                  // frame that is the drawer's first image
-  std::vector<core::MissingTile> key_missing_;       // of it
-  core::Backend backend_ = core::Backend::kPolygon;  // of renderer_
-  bool is_prepared_ = false;                         // the target
-  FilmReports* reports_ = nullptr;                   // during run()
+  std::shared_ptr<const paging::PlanetFile> planet_;  // of renderer_ and drawer_; null: without changes
+  std::optional<std::int64_t> key_;                   // frame that is the drawer's first image
+  std::vector<core::MissingTile> key_missing_;        // of it
+  core::Backend backend_ = core::Backend::kPolygon;   // of renderer_
+  bool is_prepared_ = false;                          // the target
+  FilmReports* reports_ = nullptr;                    // during run()
   ProgressLine* line_ = nullptr;
   FrameSink* sink_ = nullptr;
 };

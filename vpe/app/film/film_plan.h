@@ -45,7 +45,7 @@ struct PlannedFrame {
   core::DrawRequest
       request;  // in stereo that of the middle between both eyes, with the size of one eye's image
   core::Backend backend = core::Backend::kPolygon;
-  bool names_backend = false;  // the flight names it
+  bool names_backend = false;   // the flight names it
   scripts::GroundState ground;  // of the planet on which the frame is drawn
   std::optional<core::StereoPair> stereo;
   // Widest gap of the second eye, which is carried from the first (CarriedDrawerOptions::gap_px). Absent: all is drawn in

@@ -44,7 +44,8 @@ std::string list_of(const std::vector<std::string>& words) {
   constexpr std::size_t kMostWords = 8;
   std::string text;
   for (std::size_t n = 0; n < std::min(kMostWords, words.size()); ++n) text += (n > 0 ? ", " : "") + words[n];
-  return words.size() > kMostWords ? text + " and " + std::to_string(words.size() - kMostWords) + " more" : text;
+  return words.size() > kMostWords ? text + " and " + std::to_string(words.size() - kMostWords) + " more"
+                                   : text;
 }
 
 struct FlyArguments {
@@ -392,8 +393,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   const std::unique_ptr<FlightGround> ground = ground_of(arguments, common, flight, planet);
   ChangedPlanet changed;
   if (ground) changed = [&](const scripts::GroundState& state) { return ground->planet(state); };
-  const std::vector<PlannedFilm> films =
-      plan_film(arguments, common, flight, base, planet, terrain, changed);
+  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, planet, terrain, changed);
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   check_parts(arguments, session, request.shard, common.quiet);
@@ -449,6 +449,13 @@ void fly(FlyArguments& arguments, const Common& common) {
   };
   session.make(plan, reports, arguments.image, {renderer, carried, changed}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);
+  if (ground && !common.quiet && count(session.frames()).made > 0 && ground->is_coarser()) {
+    std::fprintf(
+        stderr,
+        "vpe: note: the ground that %s changes has coarser posts than it asks for, since a patch has a limit of "
+        "tiles; spacing= in its reliefs says what they are\n",
+        arguments.flight.c_str());
+  }
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
   const bool illustration = meta.illustration || ground;

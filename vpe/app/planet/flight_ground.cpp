@@ -118,7 +118,8 @@ std::shared_ptr<const GroundChange> FlightGround::change(const scripts::GroundSt
       changes.push_back(paging::mixed_ground(file.raster, patch.mix));
     } else if (!file.reliefs.empty()) {
       changes.push_back(paging::partial_change(
-          paging::relief_change(relief::place(file.reliefs, base_->radius_m(), ground_m), patch.file), patch.mix));
+          paging::relief_change(relief::place(file.reliefs, base_->radius_m(), ground_m), patch.file),
+          patch.mix));
     }
   }
   if (!state.reliefs.empty())

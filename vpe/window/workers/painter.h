@@ -26,9 +26,9 @@ struct ImageRequest {
   bool is_full = true;          // not made coarser, nor smaller, to save time
   double px_per_screen_px = 1;  // of the image, along a side
   std::optional<core::StereoLayout> stereo;
-  double eye_base_m = 0;           // with stereo; > 0
-  double convergence_m = 0;        // with stereo; where both images coincide; 0: infinitely far
-  double flight_time_s = 0;        // for the overlay of that name
+  double eye_base_m = 0;     // with stereo; > 0
+  double convergence_m = 0;  // with stereo; where both images coincide; 0: infinitely far
+  double flight_time_s = 0;  // for the overlay of that name
   // How the flight that is followed changes the ground, at flight_time_s; null: it does not.
   std::shared_ptr<const scripts::GroundTracks> ground;
   std::optional<double> logged_s;  // its time in the log while a session is recorded
