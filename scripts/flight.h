@@ -17,6 +17,10 @@
 //   at 15  object Curiosity lon=137.4 lat=-4.6 heading=90
 //                                             version 1.2; a name with blanks needs quotes
 //   at 16  object Curiosity show=off
+//   at 17  relief "a crater" kind=crater lon=137.4 lat=-4.6 radius=100 depth=20
+//                                             version 1.3; keys of relief/spec_line.h
+//   at 19  relief "a crater" radius=400 depth=80
+//   at 19  patch new.vpe mix=0.5              version 1.3; a planet, a raster or *.relief.toml
 //   at 20  end                                the last command; without it, the flight ends at its last time
 //
 // `pose` needs lon, lat and one of alt (above the sphere) and height (above the terrain); angles left out are
@@ -34,6 +38,13 @@
 // (along its way). Lines of one name are points of its way: it moves evenly from each to the next along the great circle,
 // and stands at the first one before its time and at the last one after it. `show=off` hides it from then on, `show=on`
 // shows it. There is at most one line of a name at a time.
+//
+// `relief` changes the ground by a formula (relief/spec.h). A line with `kind` describes the relief of a name, which is
+// there from then on; later lines without it change keys. Numbers change smoothly from one line that gives them to the next,
+// angles the short way; a key cannot change between a number and `auto`. Words, `octaves` and `seed` hold from their time
+// on. `spacing` belongs to the line with `kind`. `show` is as for objects. `patch` changes the ground towards that of a file:
+// `mix` is the share of the difference, and changes smoothly too. Patches come first, then reliefs, each in the order of
+// their first lines (scripts/ground_tracks.h).
 //
 // Typical usage:
 //   const ParsedFlight parsed = parse_flight(text, "tour.flight");
@@ -71,6 +82,7 @@ enum class FlightVersion : std::uint8_t {
   k1,
   k1_1,  // also `view` at a time
   k1_2,  // also `object`
+  k1_3,  // also `relief` and `patch`
 };
 
 // Holds the `view` line: how the flight is filmed.
@@ -168,6 +180,25 @@ struct ObjectCommand {
   bool operator==(const ObjectCommand&) const = default;
 };
 
+// Holds a `relief` line: keys of a relief, whether it is shown, or both.
+struct ReliefCommand {
+  double time_s = 0;
+  std::string name;
+  std::string keys;  // as relief::parse_relief_line() reads them, separated by a blank; may be empty
+  std::optional<bool> is_shown;
+
+  bool operator==(const ReliefCommand&) const = default;
+};
+
+// Holds a `patch` line.
+struct PatchCommand {
+  double time_s = 0;
+  std::string file;
+  double mix = 0;  // 0: the ground without the file; 1: with it
+
+  bool operator==(const PatchCommand&) const = default;
+};
+
 // Holds a whole flight. Each list is in ascending order of time; parse_flight() ensures it.
 struct Flight {
   FlightView view;
@@ -177,12 +208,15 @@ struct Flight {
   std::vector<InterestCommand> interests;
   std::vector<ViewCommand> views;
   std::vector<ObjectCommand> objects;
+  std::vector<ReliefCommand> reliefs;
+  std::vector<PatchCommand> patches;
   std::optional<double> end_s;
 
   bool operator==(const Flight&) const = default;
 };
 
-// Returns the oldest version that holds a flight: k1 if no view has a time and no object moves.
+// Returns the oldest version that holds a flight: k1 if no view has a time, no object moves and the ground
+// stays.
 FlightVersion version_of(const Flight& flight);
 
 // Returns the time of the end, or the last time in the flight.
@@ -220,6 +254,8 @@ std::string to_line(const SetCommand& set);
 std::string to_line(const InterestCommand& interest);
 std::string to_line(const ViewCommand& command);
 std::string to_line(const ObjectCommand& command);
+std::string to_line(const ReliefCommand& command);
+std::string to_line(const PatchCommand& command);
 std::string end_line(double time_s);
 std::string version_line(FlightVersion version);
 

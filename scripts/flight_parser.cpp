@@ -7,6 +7,7 @@
 
 #include "scripts/flight.h"
 #include "scripts/flight_words.h"
+#include "scripts/ground_lines.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
@@ -43,7 +44,7 @@ class Parser {
     }
     line_ = std::max(line_, 1);
     if (!version_seen_) {
-      fail("the first command \"flight 1\", \"flight 1.1\" or \"flight 1.2\", found an empty file");
+      fail("the first command " + versions() + ", found an empty file");
     } else if (flight_.waypoints.empty() && errors_.empty()) {
       fail("at least one pose (at T pose lon=.. lat=.. alt=..), found none in the file");
     }
@@ -58,9 +59,11 @@ class Parser {
     if (!full()) errors_.push_back({name_, line_, "expected " + expected});
   }
 
+  static std::string versions() { return "\"flight 1\", \"flight 1.1\", \"flight 1.2\" or \"flight 1.3\""; }
+
   bool version(const Words& words) {
     const bool named = words.size() == 2 && words[0] == "flight";
-    constexpr std::array<std::string_view, 3> kVersions{"1", "1.1", "1.2"};
+    constexpr std::array<std::string_view, 4> kVersions{"1", "1.1", "1.2", "1.3"};
     const auto found = named ? std::find(kVersions.begin(), kVersions.end(), words[1]) : kVersions.end();
     version_seen_ = found != kVersions.end();
     if (version_seen_) {
@@ -68,10 +71,8 @@ class Parser {
       return true;
     }
     const bool other = named && parse_number(words[1]).has_value();
-    fail(other ? "\"flight 1\", \"flight 1.1\" or \"flight 1.2\" (this program reads versions 1 to 1.2), found "
-                 "version " +
-                     words[1]
-               : "the first command \"flight 1\", \"flight 1.1\" or \"flight 1.2\", found " + quote(words[0]));
+    fail(other ? versions() + " (this program reads versions 1 to 1.3), found version " + words[1]
+               : "the first command " + versions() + ", found " + quote(words[0]));
     return false;
   }
 
@@ -163,13 +164,15 @@ class Parser {
     if (name == "end") return end(arguments);
     if (name == "view") return timed_view(arguments);
     if (name == "object") return object(arguments);
+    if (name == "relief" || name == "patch") return ground(name, arguments);
     fail(std::string(commands()) + " after the time, found " + quote(name));
   }
 
   std::string_view commands() const {
     if (version_ == FlightVersion::k1) return "pose, look, set, interest or end";
-    return version_ == FlightVersion::k1_1 ? "pose, look, set, interest, view or end"
-                                           : "pose, look, set, interest, view, object or end";
+    if (version_ == FlightVersion::k1_1) return "pose, look, set, interest, view or end";
+    return version_ == FlightVersion::k1_2 ? "pose, look, set, interest, view, object or end"
+                                           : "pose, look, set, interest, view, object, relief, patch or end";
   }
 
   void pose(const Words& words) {
@@ -299,6 +302,14 @@ class Parser {
     flight_.objects.push_back(std::move(command));
   }
 
+  void ground(std::string_view name, const Words& words) {
+    if (version_ < FlightVersion::k1_3)
+      return fail("\"flight 1.3\" as the first command of a flight with \"at TIME " + std::string(name) + "\"");
+    const std::string problem = name == "relief" ? ground_.add_relief(time_s_, words, flight_.reliefs)
+                                                 : ground_.add_patch(time_s_, words, flight_.patches);
+    if (!problem.empty()) fail(problem);
+  }
+
   std::optional<DrawnBy> read_backend(std::string_view text) {
     const std::optional<vpe::core::Backend> backend = vpe::core::parse_backend(text);
     if (backend || text == to_string(DrawnBy::kAuto)) return vpe::core::drawn_by(backend);
@@ -358,6 +369,7 @@ class Parser {
   bool time_seen_ = false;
   bool ended_ = false;
   std::set<std::string> objects_now_;  // with a line at the time of the last one
+  GroundLines ground_;
   Flight flight_;
   std::vector<FlightError> errors_;
 };
@@ -380,6 +392,8 @@ double duration_s(const Flight& flight) {
   include(flight.interests);
   include(flight.views);
   include(flight.objects);
+  include(flight.reliefs);
+  include(flight.patches);
   return last_s;
 }
 

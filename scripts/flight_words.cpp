@@ -13,6 +13,11 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
 
+// Returns true for commands that are followed by a name.
+bool has_name(std::string_view command) {
+  return command == "object" || command == "relief" || command == "patch";
+}
+
 }  // namespace
 
 std::string quote(std::string_view text) {
@@ -33,8 +38,8 @@ Words split_words(std::string_view line, std::string& fault) {
     line.remove_prefix(begin);
     std::string& word = words.emplace_back();
     std::size_t at = 0;
-    // `at T object NAME`: the name may be quoted.
-    const bool is_quoted_name = words.size() == 4 && words[2] == "object" && line.starts_with('"');
+    // `at T object NAME` and the like: the name may be quoted.
+    const bool is_quoted_name = words.size() == 4 && has_name(words[2]) && line.starts_with('"');
     while (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
       // Only the first equals sign can be before a quoted value.
       const bool opens =

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <utility>
 
@@ -35,13 +36,14 @@ std::string size_text(int width, int height) { return std::to_string(width) + "x
 }  // namespace
 
 FlightVersion version_of(const Flight& flight) {
+  if (!flight.reliefs.empty() || !flight.patches.empty()) return FlightVersion::k1_3;
   if (!flight.objects.empty()) return FlightVersion::k1_2;
   return flight.views.empty() ? FlightVersion::k1 : FlightVersion::k1_1;
 }
 
 std::string version_line(FlightVersion version) {
-  if (version == FlightVersion::k1) return "flight 1\n";
-  return version == FlightVersion::k1_1 ? "flight 1.1\n" : "flight 1.2\n";
+  constexpr std::array<const char*, 4> kLines{"flight 1\n", "flight 1.1\n", "flight 1.2\n", "flight 1.3\n"};
+  return kLines[static_cast<std::size_t>(version)];
 }
 
 std::string to_line(const FlightView& view) {
@@ -100,6 +102,18 @@ std::string to_line(const ObjectCommand& command) {
   return line + "\n";
 }
 
+std::string to_line(const ReliefCommand& command) {
+  std::string line = "at " + format_number(command.time_s) + " relief " + value_text(command.name);
+  if (!command.keys.empty()) line += " " + command.keys;
+  if (command.is_shown) line += *command.is_shown ? " show=on" : " show=off";
+  return line + "\n";
+}
+
+std::string to_line(const PatchCommand& command) {
+  return "at " + format_number(command.time_s) + " patch " + value_text(command.file) +
+         " mix=" + format_number(command.mix) + "\n";
+}
+
 std::string end_line(double time_s) { return at_line(time_s, "end", {}); }
 
 std::string to_text(const Flight& flight) {
@@ -113,6 +127,8 @@ std::string to_text(const Flight& flight) {
   add(flight.interests);
   add(flight.views);
   add(flight.objects);
+  add(flight.reliefs);
+  add(flight.patches);
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 
   std::string text = version_line(version_of(flight)) + to_line(flight.view);

@@ -87,7 +87,7 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
     head_.time_s = *last_frame_s_;
     lines += to_line(head_);
   }
-  lines += object_lines(time_s);
+  lines += waiting_lines(time_s);
   lines += view_lines(time_s, view);
   lines += to_line(Waypoint{.time_s = time_s,
                             .lon_deg = pose.lon_deg,
@@ -120,11 +120,27 @@ void FlightLog::objects(std::span<const ObjectCommand> commands) {
   objects_.assign(commands.begin(), commands.end());
 }
 
-std::string FlightLog::object_lines(double time_s) {
-  std::string lines;
-  for (; objects_written_ < objects_.size() && objects_[objects_written_].time_s <= time_s; ++objects_written_)
-    lines += to_line(objects_[objects_written_]);
-  return lines;
+void FlightLog::ground(std::span<const ReliefCommand> reliefs, std::span<const PatchCommand> patches) {
+  if (!(reliefs.empty() && patches.empty()) && version_ < FlightVersion::k1_3)
+    throw std::logic_error("a log of this version has ground that stays");
+  reliefs_.assign(reliefs.begin(), reliefs.end());
+  patches_.assign(patches.begin(), patches.end());
+}
+
+// Returns the lines up to a time of what the flight itself moves or changes, in ascending order of time.
+std::string FlightLog::waiting_lines(double time_s) {
+  std::vector<std::pair<double, std::string>> lines;
+  const auto take = [&](auto& waiting) {
+    for (; !waiting.empty() && waiting.front().time_s <= time_s; waiting.pop_front())
+      lines.emplace_back(waiting.front().time_s, to_line(waiting.front()));
+  };
+  take(objects_);
+  take(reliefs_);
+  take(patches_);
+  std::ranges::stable_sort(lines, {}, [](const auto& line) { return line.first; });
+  std::string text;
+  for (const auto& line : lines) text += line.second;
+  return text;
 }
 
 void FlightLog::note(std::string_view text) {
@@ -135,7 +151,7 @@ void FlightLog::note(std::string_view text) {
 }
 
 void FlightLog::end(double time_s) {
-  file_.write(object_lines(time_s) + end_line(time_s));
+  file_.write(waiting_lines(time_s) + end_line(time_s));
   file_.close();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -68,6 +69,9 @@ class FlightLog {
   // 1.2.
   void objects(std::span<const ObjectCommand> commands);
 
+  // Takes the lines that change the ground, likewise. Throws std::logic_error for lines in a log of a version before 1.3.
+  void ground(std::span<const ReliefCommand> reliefs, std::span<const PatchCommand> patches);
+
   // Writes a comment line, for people and for programs that can read it. Replay ignores it. Line ends become
   // blanks.
   void note(std::string_view text);
@@ -77,7 +81,7 @@ class FlightLog {
 
  private:
   std::string view_lines(double time_s, const ViewState& view);
-  std::string object_lines(double time_s);
+  std::string waiting_lines(double time_s);
 
   LineFile file_;
   FlightVersion version_;
@@ -86,8 +90,9 @@ class FlightLog {
   vpe::core::Settings settings_;                // last ones written
   ViewCommand view_{.time_s = -1, .view = {}};  // all that was written so far, and when last
   std::size_t regions_ = 0;                     // written so far
-  std::vector<ObjectCommand> objects_;
-  std::size_t objects_written_ = 0;
+  std::deque<ObjectCommand> objects_;           // not written yet
+  std::deque<ReliefCommand> reliefs_;
+  std::deque<PatchCommand> patches_;
 };
 
 }  // namespace scripts

@@ -125,6 +125,11 @@ std::span<const Command> up_to(const std::vector<Command>& commands, double time
   return {commands.begin(), end};
 }
 
+std::shared_ptr<const GroundTracks> ground_of(const Flight& flight, double radius_m) {
+  if (flight.reliefs.empty() && flight.patches.empty()) return nullptr;
+  return std::make_shared<const GroundTracks>(flight, radius_m);
+}
+
 double half_fov_rad(double fov_deg) { return 0.5 * fov_deg * mars::kRadiansPerDegree; }
 
 // Adds to each command what those before it say.
@@ -173,6 +178,7 @@ Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_h
                           duration_s_)),
       interests_(flight.interests),
       tracks_(object_tracks(flight.objects)),
+      ground_(ground_of(flight, radius_m)),
       views_(accumulated(flight.views)),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),
@@ -251,13 +257,20 @@ std::span<const InterestCommand> Path::interests(double time_s) const { return u
 
 std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
                                           const TerrainHeight& terrain_height_m) {
+  return lowest_clearance(path, rate, [&](mars::LonLat place, double exaggeration, double) {
+    return terrain_height_m(place, exaggeration);
+  });
+}
+
+std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
+                                          const ChangingTerrainHeight& terrain_height_m) {
   std::optional<Clearance> lowest;
   const std::int64_t frames = frame_count(rate, path.duration_s());
   for (std::int64_t k = 0; k < frames; ++k) {
     const double time_s = frame_time(rate, k);
     const mars::Pose pose = path.at(time_s).pose;
     const mars::LonLat place{pose.lon_deg, pose.lat_deg};
-    const double height_m = pose.alt_m - terrain_height_m(place, path.exaggeration(time_s));
+    const double height_m = pose.alt_m - terrain_height_m(place, path.exaggeration(time_s), time_s);
     if (std::isfinite(height_m) && (!lowest || height_m < lowest->height_m))
       lowest = {k, time_s, height_m, place};
   }

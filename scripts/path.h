@@ -11,6 +11,8 @@
 //     them, at 0 s. Two equal ones hold it. Flights without such lines do not change it.
 //   - Other keys of `view` lines hold from their time on.
 //   - Objects move at constant speed along the great circle between two of their lines (vpe/core/object_track.h).
+//   - The ground changes by `relief` and `patch` lines as ground_tracks.h says. Poses with a height count from the ground
+//     without these changes.
 //   - Before the first pose (or `look` line), and between the last one and the end, the state is held, as if a
 //     line with the same values stood at the start (or the end).
 //   - At the time of a pose, `look` or `view` line the state is that of the line, to the bit: a log replays exactly.
@@ -33,6 +35,7 @@
 #include "mars/geodesy/pose.h"
 #include "mars/geodesy/sphere.h"
 #include "scripts/flight.h"
+#include "scripts/ground_tracks.h"
 #include "scripts/monotone_spline.h"
 #include "scripts/spherical_spline.h"
 #include "vpe/core/appearance/settings.h"
@@ -57,8 +60,8 @@ class Path {
  public:
   // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none. The
   // terrain is exaggerated as exaggeration() returns for the pose's time: by what the flight has set up to
-  // then, and by `exaggeration` before the flight sets it for the first time. Throws std::runtime_error,
-  // naming the time, when a terrain height is unknown, when a camera is not above the planet's centre, and
+  // then, and by `exaggeration` before the flight sets it for the first time. Throws what GroundTracks throws, and
+  // std::runtime_error, naming the time, when a terrain height is unknown, when a camera is not above the planet's centre, and
   // when two successive poses, or places of an object, are opposite, so that no great circle is defined.
   Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration = 1);
 
@@ -76,6 +79,10 @@ class Path {
 
   // Returns how the flight moves objects of the scene, by ascending names; null if it moves none.
   const std::shared_ptr<const std::vector<vpe::core::ObjectTrack>>& tracks() const { return tracks_; }
+
+  // Returns how the flight changes the ground; null if it does not.
+  const std::shared_ptr<const GroundTracks>& ground() const { return ground_; }
+  GroundState ground_at(double time_s) const { return ground_ ? ground_->at(time_s) : GroundState(); }
 
   // Returns the regions of interest given up to and including a time.
   std::span<const InterestCommand> interests(double time_s) const;
@@ -101,6 +108,7 @@ class Path {
   std::vector<HeadCommand> heads_;  // likewise
   std::vector<InterestCommand> interests_;
   std::shared_ptr<const std::vector<vpe::core::ObjectTrack>> tracks_;
+  std::shared_ptr<const GroundTracks> ground_;
   std::vector<ViewCommand> views_;  // each with what those before it say
   std::vector<Fov> fovs_;           // held at both ends; empty if no view has one
   SphericalSpline<glm::dvec3> place_;
@@ -124,5 +132,10 @@ struct Clearance {
 // unknown under all of them.
 std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
                                           const TerrainHeight& terrain_height_m);
+
+// Returns the height of terrain that changes, as TerrainHeight does.
+using ChangingTerrainHeight = std::function<double(mars::LonLat place, double exaggeration, double time_s)>;
+std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
+                                          const ChangingTerrainHeight& terrain_height_m);
 
 }  // namespace scripts

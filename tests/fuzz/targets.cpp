@@ -12,6 +12,7 @@
 #include "paging/planet/codec.h"
 #include "paging/planet/verify.h"
 #include "scripts/flight.h"
+#include "scripts/ground_tracks.h"
 #include "tests/support/fake_source.h"
 #include "vpe/core/image/image.h"
 
@@ -57,8 +58,22 @@ void run_flight(std::span<const std::uint8_t> bytes) {
   require(scripts::duration_s(*parsed.flight) >= 0, "no negative duration");
   require(parsed.flight->views.empty() || scripts::version_of(*parsed.flight) >= scripts::FlightVersion::k1_1,
           "views need version 1.1");
-  require(parsed.flight->objects.empty() || scripts::version_of(*parsed.flight) == scripts::FlightVersion::k1_2,
+  require(parsed.flight->objects.empty() || scripts::version_of(*parsed.flight) >= scripts::FlightVersion::k1_2,
           "objects need version 1.2");
+  try {
+    const scripts::GroundTracks ground(*parsed.flight, mars::kMarsRadius_m);
+    for (const double time_s : ground.times_s()) {
+      for (const double later_s : {0.0, 1e-3, 7.0}) {
+        const scripts::GroundState state = ground.at(time_s + later_s);
+        for (const relief::ReliefSpec& one : state.reliefs)
+          require(relief::problem_of(one).empty(), "reliefs are sound at any time");
+        for (const scripts::PatchState& one : state.patches)
+          require(one.mix > 0 && one.mix <= 1, "mixes are shares");
+      }
+    }
+  } catch (const std::runtime_error& e) {
+    require(std::string_view(e.what()).starts_with("the relief \""), "messages name the relief");
+  }
 }
 
 std::vector<Bytes> flight_seeds() {
@@ -71,6 +86,10 @@ std::vector<Bytes> flight_seeds() {
           "base=2.5 size=640x360\nat 2 view eyes=off backend=auto\nat 3 view fov=40 eyes=anaglyph base=0\n"),
       bytes_of("flight 1.2\nat 0 pose lon=1 lat=2 alt=3e5\nat 0 object \"a b\" lon=1 lat=2 height=3 heading=4\n"
                "at 2 object c show=off\nat 3 object \"a b\" lon=1.5 lat=2 show=on\nat 4 view fov=30\n"),
+      bytes_of(
+          "flight 1.3\nat 0 pose lon=1 lat=2 alt=3e5\nat 0 relief \"a b\" kind=crater lon=1 lat=2 radius=30\n"
+          "at 0 patch b.vpe mix=0\nat 2 relief \"a b\" radius=90 lon=-1 mode=min\nat 3 relief \"a b\" show=off\n"
+          "at 4 patch b.vpe mix=0.5\nat 5 relief \"a b\" kind=pad lon=1 lat=2 radius=3 rise=1\n"),
       bytes_of("# nothing\nflight 1\n")};
   const fs::path folder = fs::path(VPE_SOURCE_DIR) / "scripts" / "flights";
   for (const auto& entry : fs::directory_iterator(folder)) all.push_back(read(entry.path()));

@@ -8,6 +8,7 @@
 
 #include "scripts/path.h"
 #include "tests/support/support.h"
+#include "vpe/base/number.h"
 #include "vpe/core/appearance/overlays.h"
 #include "vpe/core/appearance/settings.h"
 
@@ -101,11 +102,11 @@ TEST(Flight, EndsWithTheLastTimeGiven) {
 }
 
 TEST(Flight, FirstLineIsTheVersion) {
-  expect_error("", 1, "\"flight 1.1\" or \"flight 1.2\", found an empty file");
+  expect_error("", 1, "\"flight 1.2\" or \"flight 1.3\", found an empty file");
   expect_error("\n# nothing\n", 2, "found an empty file");
   expect_error("at 0 end\n", 1, "\"flight 1\"");
-  expect_error("\nflight 2\n", 2, "reads versions 1 to 1.2), found version 2");
-  expect_error("flight 1.3\n", 1, "found version 1.3");
+  expect_error("\nflight 2\n", 2, "reads versions 1 to 1.3), found version 2");
+  expect_error("flight 1.4\n", 1, "found version 1.4");
   expect_error("flight 1.10\n", 1, "found version 1.10");
   expect_error("flight 1 2\n", 1, "\"flight 1\"");
   expect_error("flight one\n", 1, "\"flight 1\"");
@@ -242,7 +243,7 @@ TEST(Flight, ReadsViewsWithATime) {
 TEST(Flight, IsWrittenInTheOldestVersionThatHoldsIt) {
   const std::string old =
       "flight 1\nview fov=60 size=1280x720 fps=30\nat 0 pose lon=0 lat=0 alt=1 yaw=0 pitch=0 roll=0\n";
-  for (const char* version : {"flight 1\n", "flight 1.1\n", "flight 1.2\n"}) {
+  for (const char* version : {"flight 1\n", "flight 1.1\n", "flight 1.2\n", "flight 1.3\n"}) {
     const ParsedFlight parsed = parse_flight(version + old.substr(9), "F");
     ASSERT_TRUE(parsed.flight.has_value());
     EXPECT_EQ(to_text(*parsed.flight), old);
@@ -420,6 +421,20 @@ ObjectCommand random_object(Random& random, double time_s) {
   return command;
 }
 
+// Adds a line of a relief that may be there already.
+void add_relief(Random& random, double time_s, std::vector<ReliefCommand>& to) {
+  const char* names[] = {"pit", "a b", "#1", "say \"x\"", "back\\slash", "kind=pad"};
+  ReliefCommand line{time_s, names[random.integer(0, 5)], "", {}};
+  const bool is_known = std::ranges::any_of(to, [&](const auto& one) { return one.name == line.name; });
+  if (!is_known || random.integer(0, 3) == 0) {
+    line.keys = "kind=crater lon=" + vpe::base::format_number(random.uniform(-360, 360)) + " lat=-4 radius=20";
+  } else if (random.integer(0, 2) > 0) {
+    line.keys = "radius=" + vpe::base::format_number(random.log_uniform(0.01, 1e6)) + " mode=min";
+  }
+  if (line.keys.empty() || random.integer(0, 2) == 0) line.is_shown = random.integer(0, 1) == 1;
+  to.push_back(line);
+}
+
 Flight random_flight(Random& random) {
   Flight flight;
   flight.view.fov_deg = random.uniform(1, 170);
@@ -448,6 +463,9 @@ Flight random_flight(Random& random) {
     }
     if (random.integer(0, 3) == 0) flight.views.push_back({t, random_view(random)});
     if (random.integer(0, 3) == 0) flight.objects.push_back(random_object(random, t));
+    if (random.integer(0, 3) == 0) add_relief(random, t, flight.reliefs);
+    if (random.integer(0, 3) == 0)
+      flight.patches.push_back({t, random.integer(0, 1) == 0 ? "a b.vpe" : "#.tif", random.uniform(0, 1)});
     t += random.log_uniform(1e-9, 100);
   }
   if (random.integer(0, 1) == 0) flight.end_s = t;

@@ -178,6 +178,29 @@ TEST(FlightLog, HasTheLinesOfObjectsAtTheirTimes) {
   EXPECT_EQ(parsed.flight->objects, lines);
 }
 
+TEST(FlightLog, HasTheLinesOfTheGroundAtTheirTimes) {
+  const TempDir folder;
+  const std::vector<ReliefCommand> reliefs{{0.5, "a b", "kind=crater lon=1 lat=2 radius=30", {}},
+                                           {2.5, "a b", "radius=40", false}};
+  const std::vector<PatchCommand> patches{{0.5, "b c.vpe", 0}, {0.75, "b c.vpe", 1}};
+  EXPECT_THROW(
+      FlightLog(folder / "old.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_2).ground(reliefs, patches),
+      std::logic_error);
+  FlightLog log(folder / "log.flight", {}, LineFile::Mode::kLive, FlightVersion::k1_3);
+  log.ground(reliefs, patches);
+  for (int k = 0; k < 3; ++k) {
+    log.frame(k, {1.0 * k, 2, 3, 4, 5, 6}, {}, {});
+    const ParsedFlight parsed = parse_flight(read_file(folder / "log.flight"), "log.flight");
+    ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+    EXPECT_EQ(parsed.flight->reliefs.size(), k == 0 ? 0U : 1U);
+  }
+  log.end(3);
+  const ParsedFlight parsed = parse_flight(read_file(folder / "log.flight"), "log.flight");
+  ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
+  EXPECT_EQ(parsed.flight->reliefs, reliefs);
+  EXPECT_EQ(parsed.flight->patches, patches);
+}
+
 TEST(FlightLog, IsAValidFlightAtAnyMoment) {
   const TempDir folder;
   FlightLog log(folder / "log.flight", {});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "paging/planet/planet_user.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
@@ -20,6 +21,7 @@ constexpr std::size_t kCarryingShare = 8;
 WindowPainter::WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common,
                              StereoMethod stereo, double change_s)
     : planet_(planet),
+      shown_(planet),
       common_(std::move(common)),
       change_s_(change_s),
       overlays_(std::move(planet)),
@@ -35,6 +37,7 @@ CarriedDrawer* WindowPainter::drawer_for(const core::DrawRequest& request, Eye e
         CarriedDrawerOptions{.gap_px = stereo_.gap_px,
                              .memory_bytes = memory_bytes(common_) / kCarryingShare,
                              .threads = common_.threads});
+    if (shown_ != planet_) carried_->change_planet(shown_);
   }
   return carried_.get();
 }
@@ -54,6 +57,28 @@ core::DrawResult WindowPainter::with_overlays(const core::DrawRequest& request, 
   const FrameGround ground{result.frame.range_m, result.certificate, {}};
   overlay::composite(overlays.layer(request, ground, time_s), result.frame.colour);
   return result;
+}
+
+void WindowPainter::change_ground(const window::ImageRequest& request) {
+  std::shared_ptr<const paging::PlanetFile> next = planet_;
+  if (request.ground) {
+    if (!ground_ || !(ground_->tracks() == *request.ground))
+      ground_ = std::make_unique<FlightGround>(planet_, *request.ground, "flight", common_);
+    next = ground_->planet(request.ground->at(request.flight_time_s));
+  }
+  if (next == shown_) return;
+  // If one of them fails, all are made anew.
+  shown_ = next;
+  try {
+    overlays_.change_planet(next);
+    paging::change_planet(*renderer_, next);
+    if (carried_) carried_->change_planet(next);
+  } catch (...) {
+    carried_.reset();
+    renderer_.reset();
+    backend_.reset();
+    throw;
+  }
 }
 
 bool WindowPainter::is_same(const Sight& a, const Sight& b) {
@@ -78,6 +103,7 @@ bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage&
   const bool fits = palette_of_ && palette_of_->colour == now.colour;
   if (!fits || (rests && !is_same(*palette_of_, now))) {
     if (!view_palette_) view_palette_ = std::make_unique<ViewPalette>(planet_, common_);
+    view_palette_->change_planet(shown_);
     view_palette_->clear();
     view_palette_->add(reduced(request));
     ends_ = view_palette_->ends();
@@ -172,8 +198,10 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     earlier_renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
     renderer_ = make_renderer(with_backend(backend), share_of(common_, *planet_), planet_);
+    if (shown_ != planet_) paging::change_planet(*renderer_, shown_);
     backend_ = backend;
   }
+  change_ground(request);
   core::DrawRequest draw_request = std::move(as_asked.draw);
   draw_request.paging.change_wait_s = change_s_;
   draw_request.time_s = request.flight_time_s;

@@ -10,6 +10,7 @@
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/view_palette.h"
+#include "vpe/app/planet/flight_ground.h"
 #include "vpe/window/workers/painter.h"
 
 namespace vpe::app {
@@ -43,9 +44,13 @@ class WindowPainter : public window::Painter {
   CarriedDrawer* drawer_for(const core::DrawRequest& request, Eye eye);
   void draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
                  window::DrawnImage& drawn);
+  // Goes over to the planet as the flight has changed it at the request's time.
+  void change_ground(const window::ImageRequest& request);
   bool take_palette(core::DrawRequest& request, window::DrawnImage& drawn);
 
-  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::shared_ptr<const paging::PlanetFile> planet_;  // as its file is
+  std::shared_ptr<const paging::PlanetFile> shown_;   // with the changes of a flight
+  std::unique_ptr<FlightGround> ground_;              // of the last flight that changed the ground
   Common common_;
   double change_s_;
   FrameOverlays overlays_;

@@ -46,7 +46,8 @@ std::size_t bytes_of(const Flight& f) {
   std::size_t bytes =
       sizeof f + f.waypoints.size() * sizeof(Waypoint) + f.heads.size() * sizeof(scripts::HeadCommand) +
       f.interests.size() * sizeof(scripts::InterestCommand) + f.views.size() * sizeof(scripts::ViewCommand) +
-      f.objects.size() * sizeof(scripts::ObjectCommand);
+      f.objects.size() * sizeof(scripts::ObjectCommand) + f.reliefs.size() * sizeof(scripts::ReliefCommand) +
+      f.patches.size() * sizeof(scripts::PatchCommand);
   for (const scripts::SetCommand& set : f.sets) bytes += sizeof set + set.key.size() + set.text.size();
   return bytes;
 }
@@ -235,6 +236,8 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
   all(next.interests);
   all(next.views);
   all(next.objects);
+  all(next.reliefs);
+  all(next.patches);
   if (next.end_s) next.end_s = time_s(*next.end_s);
   const auto ascend = [](const auto& commands) {
     for (std::size_t i = 1; i < commands.size(); ++i) {
@@ -242,11 +245,15 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
     }
     return true;
   };
-  bool is_apart = true;
-  for (std::size_t i = 1; i < next.objects.size(); ++i) {
-    const bool was_apart = flight_.objects[i - 1].time_s < flight_.objects[i].time_s;
-    is_apart = is_apart && (!was_apart || next.objects[i - 1].time_s < next.objects[i].time_s);
-  }
+  // Of lists that may have several lines at a time.
+  const auto stay_apart = [](const auto& before, const auto& after) {
+    for (std::size_t i = 1; i < after.size(); ++i) {
+      if (before[i - 1].time_s < before[i].time_s && !(after[i - 1].time_s < after[i].time_s)) return false;
+    }
+    return true;
+  };
+  const bool is_apart = stay_apart(flight_.objects, next.objects) &&
+                        stay_apart(flight_.reliefs, next.reliefs) && stay_apart(flight_.patches, next.patches);
   if (!is_apart || !ascend(next.waypoints) || !ascend(next.heads) || !ascend(next.views)) {
     return "the times would be too close together to tell them apart";
   }

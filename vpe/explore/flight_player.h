@@ -110,6 +110,7 @@ class FlightPlayer {
   }
 
   const std::shared_ptr<const std::vector<core::ObjectTrack>>& tracks() const { return path_.tracks(); }
+  const std::shared_ptr<const scripts::GroundTracks>& ground() const { return path_.ground(); }
   std::span<const scripts::InterestCommand> interests() const { return path_.interests(time_s_); }
 
  private:

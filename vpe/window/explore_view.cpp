@@ -48,10 +48,16 @@ void ExploreWindow::request_image() {
   const std::string objects = scene.empty() ? ""
                                             : " " + scene + " " + std::to_string(objects_.shown_revision()) +
                                                   " " + base::format_number(objects_.time_s());
-  const std::string state = std::string(core::to_string(chosen.drawn_by)) +
-                            (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-                            base::format_number(chosen.eye_base_m) + " " +
-                            base::format_number(chosen.convergence_m) + objects + (swipes() ? " swipe" : "");
+  const explore::FlightPlayer* const followed = session_.follows_flight() ? session_.player() : nullptr;
+  std::string ground;
+  if (followed != nullptr && followed->ground()) {
+    for (const std::string& line : scripts::lines_of(followed->ground()->at(objects_.time_s())))
+      ground += "\n" + line;
+  }
+  const std::string state =
+      std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
+      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects +
+      ground + (swipes() ? " swipe" : "");
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
@@ -98,8 +104,10 @@ void ExploreWindow::request_image() {
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;
   request.flight_time_s = objects_.time_s();
-  if (const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr)
-    request.draw.tracks = flight->tracks();
+  if (followed != nullptr) {
+    request.draw.tracks = followed->tracks();
+    request.ground = followed->ground();
+  }
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "vpe/core/frame.h"
 
@@ -33,6 +34,7 @@ struct FilmFrame {
   std::int64_t index = 0;  // in the flight
   double time_s = 0;
   std::string fingerprint;
+  std::vector<std::string> ground;  // what changes the planet's ground, scripts::lines_of()
   State state = State::kMissing;
   FrameFigures figures;  // once kept or made
   std::string checksum;  // of its file or segment, once kept or made

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "paging/planet/planet_user.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/picture/contour_ranges.h"
 
@@ -163,6 +164,7 @@ core::Renderer& FilmMaker::renderer_for(core::Backend backend) {
   drawer_.reset();
   renderer_.reset();
   renderer_ = makers_.renderer(backend);
+  planet_.reset();
   backend_ = backend;
   return *renderer_;
 }
@@ -179,10 +181,23 @@ CarriedDrawer& FilmMaker::drawer_for(const PlannedFrame& planned, core::Renderer
   if (!drawer_ || drawer_px_ != px) {
     drawer_.reset();
     drawer_ = makers_.carried(renderer, options);
+    if (planet_) drawer_->change_planet(planet_);
     drawer_px_ = px;
     key_.reset();
   }
   return *drawer_;
+}
+
+void FilmMaker::change_ground(const scripts::GroundState& ground, core::Renderer& renderer) {
+  if (!makers_.planet) return;
+  const std::shared_ptr<const paging::PlanetFile> planet = makers_.planet(ground);
+  if (planet == planet_) return;
+  if (planet_ || !ground.empty()) {
+    paging::change_planet(renderer, planet);
+    if (drawer_) drawer_->change_planet(planet);
+    key_.reset();
+  }
+  planet_ = planet;
 }
 
 core::DrawResult FilmMaker::draw_reusing(const PlannedFrame& planned, const core::DrawRequest& request,
@@ -218,7 +233,8 @@ std::vector<FilmMaker::DrawnEye> FilmMaker::draw_eyes(std::size_t n, const Plann
     const PlannedFrame next = plan_.at(frames_[n + 1].index);
     if (next.backend == planned.backend) paging.upcoming = {next.request.view};
     // The renderer may begin the next request at once; between both eyes that is another one.
-    if (next.backend == planned.backend && !next.stereo && !planned.stereo && !next.reuse)
+    if (next.backend == planned.backend && !next.stereo && !planned.stereo && !next.reuse &&
+        next.ground == planned.ground)
       paging.next = std::make_shared<const core::DrawRequest>(next.request);
   }
   std::vector<DrawnEye> eyes;
@@ -258,6 +274,7 @@ bool FilmMaker::draw(std::size_t n) {
   core::Renderer& renderer = renderer_for(planned.backend);
   const auto eyes = std::make_shared<std::vector<DrawnEye>>();
   try {
+    change_ground(planned.ground, renderer);
     *eyes = draw_eyes(n, planned, renderer);
   } catch (const std::bad_alloc&) {
     throw;  // the next frame would not fit either
@@ -278,7 +295,8 @@ bool FilmMaker::draw(std::size_t n) {
   });
   if (!is_whole) frame.fingerprint += kIncomplete;
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
-  sink_->push([this, group, &frame, eyes, stereo = planned.stereo] {
+  sink_->push([this, group, &frame, eyes, stereo = planned.stereo, planet = planet_] {
+    if (planet) overlays_.change_planet(planet);
     target_.add(group, frame, finish(*eyes, stereo, frame.time_s));
   });
   return true;

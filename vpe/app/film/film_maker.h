@@ -13,6 +13,7 @@
 #include "scripts/log.h"
 #include "scripts/stats.h"
 #include "vpe/app/cli/progress.h"
+#include "vpe/app/film/film_palette.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/picture/carried_drawer.h"
@@ -41,6 +42,8 @@ class FilmMaker {
     // Makes what carries second eyes and frames; may be empty if the plan has none. Memory and threads of the options are
     // its own.
     std::function<std::unique_ptr<CarriedDrawer>(core::Renderer&, CarriedDrawerOptions)> carried;
+    // Returns the planet with changed ground; empty if the ground never changes. The others have the planet without changes.
+    ChangedPlanet planet = {};
   };
 
   // `first` is the number of frames[0] in the film. A renderer is made when a frame has to be drawn by it. There is
@@ -66,6 +69,7 @@ class FilmMaker {
   CarriedDrawer& drawer_for(const PlannedFrame& planned, core::Renderer& renderer);
   core::DrawResult draw_reusing(const PlannedFrame& planned, const core::DrawRequest& request,
                                 core::Renderer& renderer);
+  void change_ground(const scripts::GroundState& ground, core::Renderer& renderer);
   core::Frame finish(std::vector<DrawnEye>& eyes, const std::optional<core::StereoPair>& stereo, double time_s);
   void make_group(std::size_t begin, std::size_t end);
   bool draw(std::size_t n);
@@ -83,11 +87,12 @@ class FilmMaker {
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<CarriedDrawer> drawer_;  // of renderer_, for this gap and bound
   std::pair<double, double> drawer_px_;
-  std::optional<std::int64_t> key_;                  // frame that is the drawer's first image
-  std::vector<core::MissingTile> key_missing_;       // of it
-  core::Backend backend_ = core::Backend::kPolygon;  // of renderer_
-  bool is_prepared_ = false;                         // the target
-  FilmReports* reports_ = nullptr;                   // during run()
+  std::shared_ptr<const paging::PlanetFile> planet_;  // of renderer_ and drawer_; null: without changes
+  std::optional<std::int64_t> key_;                   // frame that is the drawer's first image
+  std::vector<core::MissingTile> key_missing_;        // of it
+  core::Backend backend_ = core::Backend::kPolygon;   // of renderer_
+  bool is_prepared_ = false;                          // the target
+  FilmReports* reports_ = nullptr;                    // during run()
   ProgressLine* line_ = nullptr;
   FrameSink* sink_ = nullptr;
 };

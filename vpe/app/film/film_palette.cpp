@@ -9,7 +9,7 @@ namespace vpe::app {
 
 std::vector<FilmPalette> film_palettes(const FilmPlan& plan, std::int64_t frames,
                                        const std::shared_ptr<const paging::PlanetFile>& planet,
-                                       const Common& common) {
+                                       const Common& common, const ChangedPlanet& changed) {
   std::map<core::Colour, std::vector<std::int64_t>> shown;
   for (std::int64_t n = 0; n < frames; ++n) {
     const core::SettingsValues settings = plan.at(n).settings.values();
@@ -24,7 +24,9 @@ std::vector<FilmPalette> film_palettes(const FilmPlan& plan, std::int64_t frames
     for (std::int64_t k = 0; k < samples; ++k) {
       // The first and the last are among them.
       const std::int64_t n = samples > 1 ? k * (count - 1) / (samples - 1) : 0;
-      view.add(reduced(plan.at(all[static_cast<std::size_t>(n)]).request));
+      const PlannedFrame planned = plan.at(all[static_cast<std::size_t>(n)]);
+      if (changed) view.change_planet(changed(planned.ground));
+      view.add(reduced(planned.request));
     }
     palettes.push_back({entry.first, view.ends()});
   }

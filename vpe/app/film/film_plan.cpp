@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "paging/planet/planet_file.h"
+#include "relief/spec_line.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
@@ -122,6 +123,7 @@ PlannedFrame FilmPlan::alone(std::int64_t frame) const {
   request.settings = out.settings.values();
   request.time_s = out.time_s;
   request.tracks = path_.tracks();
+  out.ground = path_.ground_at(out.time_s);
   request.interest = interest_;
   for (const scripts::InterestCommand& command : path_.interests(out.time_s)) {
     request.interest.push_back(command.region);
@@ -179,7 +181,8 @@ std::optional<PlannedFrame::Reuse> FilmPlan::reuse_of(const PlannedFrame& planne
   const core::DrawRequest& a = key.request;
   const core::DrawRequest& b = planned.request;
   const bool is_alike = can_be_carried(key) && key.backend == planned.backend && a.settings == b.settings &&
-                        a.sun == b.sun && a.interest == b.interest && a.want_range == b.want_range;
+                        a.sun == b.sun && a.interest == b.interest && a.want_range == b.want_range &&
+                        key.ground == planned.ground;
   return is_alike ? std::optional(reuse) : std::nullopt;
 }
 
@@ -189,12 +192,26 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   return planned;
 }
 
+// Names do not count, contents do.
+std::vector<std::string> FilmPlan::ground_lines(const scripts::GroundState& ground) const {
+  std::vector<std::string> lines;
+  for (const scripts::PatchState& patch : ground.patches) {
+    const auto stamp = views_.ground_files.find(patch.file);
+    lines.push_back((stamp == views_.ground_files.end() ? patch.file : stamp->second) + " " +
+                    base::format_number(patch.mix));
+  }
+  for (const relief::ReliefSpec& one : ground.reliefs) lines.push_back(relief::to_line(one));
+  return lines;
+}
+
 std::string FilmPlan::fingerprint(const PlannedFrame& planned) const {
   RenderBasis basis = basis_;
   basis.backend = planned.backend;
-  FingerprintOrigin origin{planned.stereo, planned.carried_gap_px, {}};
+  FingerprintOrigin origin{planned.stereo, planned.carried_gap_px, {}, ground_lines(planned.ground)};
+  FingerprintOrigin key;  // the ground is that of the frame
+  key.ground = origin.ground;
   if (planned.reuse)
-    origin.reuse = {fingerprint_of(basis, alone(planned.reuse->key).request, planned.settings),
+    origin.reuse = {fingerprint_of(basis, alone(planned.reuse->key).request, planned.settings, 0, key),
                     planned.reuse->most_added_px, planned.reuse->margin_px};
   return fingerprint_of(basis, planned.request, planned.settings, planned.time_s, origin);
 }
@@ -208,6 +225,7 @@ std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t be
     frame.index = range.frame(n);
     frame.time_s = planned.time_s;
     frame.fingerprint = fingerprint(planned);
+    frame.ground = scripts::lines_of(planned.ground);
     out.push_back(std::move(frame));
   }
   return out;

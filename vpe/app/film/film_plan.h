@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,7 +45,8 @@ struct PlannedFrame {
   core::DrawRequest
       request;  // in stereo that of the middle between both eyes, with the size of one eye's image
   core::Backend backend = core::Backend::kPolygon;
-  bool names_backend = false;  // the flight names it
+  bool names_backend = false;   // the flight names it
+  scripts::GroundState ground;  // of the planet on which the frame is drawn
   std::optional<core::StereoPair> stereo;
   // Widest gap of the second eye, which is carried from the first (CarriedDrawerOptions::gap_px). Absent: all is drawn in
   // full.
@@ -78,6 +80,8 @@ struct ViewOptions {
   // PlannedFrame::Reuse::most_added_px of frames that can take pixels of a key frame. Larger: fewer pixels are drawn, and
   // their positions are less exact. Absent: all frames are drawn in full.
   std::optional<double> reuse_px;
+  // Texts of the content of the files that change the ground, by name (ground_file_stamps()).
+  std::map<std::string, std::string> ground_files = {};
 };
 
 // The ends of the palette where a film shows a value and takes them from its views (film_palette.h).
@@ -108,7 +112,7 @@ class FilmPlan {
   const std::vector<FilmPalette>& palettes() const { return palettes_; }
 
   // Returns a frame by its index in the flight. One that follows a key frame takes pixels of it if they differ in nothing
-  // but their views, both are drawn by rays or by triangles that rays can continue, there is no haze, and neither is a
+  // but their views, both have the same ground and are drawn by rays or by triangles that rays can continue, there is no haze, and neither is a
   // pair of eyes.
   PlannedFrame at(std::int64_t frame) const;
 
@@ -119,6 +123,7 @@ class FilmPlan {
   // Returns a frame without `reuse`.
   PlannedFrame alone(std::int64_t frame) const;
   std::optional<PlannedFrame::Reuse> reuse_of(const PlannedFrame& planned) const;
+  std::vector<std::string> ground_lines(const scripts::GroundState& ground) const;
   std::string fingerprint(const PlannedFrame& planned) const;
   core::View view_of(const scripts::FlightState& state) const;
   // Returns the margin with which a key frame shows what the frames after it do.

@@ -27,6 +27,7 @@ std::string line(const json& value) { return core::json_text(value); }
 
 json frame_json(const FilmFrame& frame) {
   json out{{"index", frame.index}, {"time_s", frame.time_s}, {"fingerprint", frame.fingerprint}};
+  if (!frame.ground.empty()) out["ground"] = frame.ground;
   if (frame.is_done()) {
     out["figures"] = to_json(frame.figures);
     if (!frame.checksum.empty()) out["checksum"] = frame.checksum;
@@ -102,6 +103,7 @@ void write_manifest(const fs::path& path, const ManifestHead& head, const json& 
                                                                       : "elevation";
     top["palette"][value] = {{"low", palette.ends.low}, {"high", palette.ends.high}};
   }
+  if (!head.ground.empty()) top["ground"] = head.ground;
   if (!head.frames.empty()) top["selected"] = head.frames;
   if (head.shard.of > 1) top["part"] = std::to_string(head.shard.number) + "/" + std::to_string(head.shard.of);
   top.update(target);

@@ -28,6 +28,7 @@ struct ManifestHead {
   std::string frames;  // --frames as given
   Shard shard;
   std::vector<FilmPalette> palettes;  // ends that were taken from the views
+  std::vector<std::string> ground;    // what changes the ground, scripts::GroundTracks::names()
 };
 
 // Return the manifest's path: FOLDER/manifest.json for a folder, FILE.mp4.json for a video. A run over a part

@@ -26,6 +26,7 @@
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
+#include "vpe/app/planet/flight_ground.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/context.h"
@@ -37,6 +38,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMostReuse_px = 16;
+
+// Returns the first of the words, separated by commas.
+std::string list_of(const std::vector<std::string>& words) {
+  constexpr std::size_t kMostWords = 8;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(kMostWords, words.size()); ++n) text += (n > 0 ? ", " : "") + words[n];
+  return words.size() > kMostWords ? text + " and " + std::to_string(words.size() - kMostWords) + " more"
+                                   : text;
+}
 
 struct FlyArguments {
   std::string flight;
@@ -106,6 +116,7 @@ std::vector<fs::path> inputs_of(const FlyArguments& arguments, const scripts::Fl
     if (set.key.find("names") == std::string::npos && set.key != "palette" && set.key != "scene") continue;
     if (settings.set(set.key, set.text).empty()) add();
   }
+  for (const scripts::PatchCommand& patch : flight.patches) inputs.emplace_back(patch.file);
   return inputs;
 }
 
@@ -143,7 +154,7 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
 
 // Throws std::runtime_error with time and place if the flight passes below the ground.
 void require_above_ground(const std::string& flight, const FilmPlan& plan,
-                          const scripts::TerrainHeight& terrain) {
+                          const scripts::ChangingTerrainHeight& terrain) {
   std::optional<scripts::Clearance> lowest;
   try {
     lowest = scripts::lowest_clearance(plan.path(), plan.view().fps, terrain);
@@ -213,6 +224,11 @@ std::string backend_text(const FilmPlan& plan, std::span<const FilmFrame> frames
   return names.size() > 1 ? "mixed" : std::string(*names.begin());
 }
 
+// Returns what changes the ground in a flight.
+std::vector<std::string> names_of(const scripts::Path& path) {
+  return path.ground() ? path.ground()->names() : std::vector<std::string>();
+}
+
 void report(const FlyArguments& arguments, const Common& common, const FilmSession& session, double seconds,
             bool illustration, const std::optional<SunStatement>& sun, const FilmPlan& plan) {
   const std::vector<FilmFrame>& frames = session.frames();
@@ -221,6 +237,7 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
     summary["output"] = arguments.output;
     summary["backend"] = backend_text(plan, frames, *arguments.image.backend);
     summary["illustration"] = illustration;
+    summary["ground"] = names_of(plan.path());
     summary["sun"] = to_json(sun);
     summary["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
@@ -252,6 +269,32 @@ void require_known_objects(const std::string& file, const scripts::Flight& fligh
   }
 }
 
+// Returns what changes the ground of the planet in the flight; null if nothing does.
+std::unique_ptr<FlightGround> ground_of(const FlyArguments& arguments, const Common& common,
+                                        const scripts::Flight& flight,
+                                        const std::shared_ptr<const paging::PlanetFile>& planet) {
+  scripts::GroundTracks tracks;
+  try {
+    tracks = scripts::GroundTracks(flight, planet->radius_m());
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(arguments.flight + ": " + e.what());
+  }
+  if (tracks.empty()) return nullptr;
+  if (!common.quiet) {
+    std::fprintf(stderr, "vpe: note: %s changes the ground of the planet (%s): an illustration\n",
+                 arguments.flight.c_str(), list_of(tracks.names()).c_str());
+  }
+  return std::make_unique<FlightGround>(planet, std::move(tracks), arguments.flight, common);
+}
+
+// Returns what of the film's ground is made up, for its metadata.
+std::string statement_of(const paging::PlanetMeta& meta, const FlightGround* ground) {
+  std::string text = mars::synthetic_statement(meta.sources);
+  if (ground == nullptr) return text;
+  return text + (text.empty() ? "" : " ") +
+         "The flight changes the ground: " + list_of(ground->tracks().names()) + ".";
+}
+
 struct PlannedFilm {
   core::Backend backend;
   FilmPlan plan;
@@ -276,10 +319,12 @@ bool film_suits_rays(const FilmPlan& plan, const scripts::Flight& flight, const 
 std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
                                    const scripts::Flight& flight, const core::Settings& base,
                                    const std::shared_ptr<const paging::PlanetFile>& planet,
-                                   const scripts::TerrainHeight& terrain) {
+                                   const scripts::TerrainHeight& terrain, const ChangedPlanet& changed) {
   const RenderOptions& image = arguments.image;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   std::optional<std::vector<FilmPalette>> palettes;  // the same for every backend
+  const std::map<std::string, std::string> stamps =
+      ground_file_stamps(scripts::GroundTracks(flight, planet->radius_m()).files());
   const auto plan_of = [&](const BackendChoice& chosen) {
     PlannedFilm film{
         chosen.backend,
@@ -289,8 +334,8 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
             chosen.settings, parse_interest(image),
             {image.backend ? std::nullopt : std::optional(base), terrain,
              arguments.stereo.carries() ? std::optional(arguments.stereo.gap_px) : std::nullopt,
-             arguments.reuse_px > 0 ? std::optional(arguments.reuse_px) : std::nullopt})};
-    if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
+             arguments.reuse_px > 0 ? std::optional(arguments.reuse_px) : std::nullopt, stamps})};
+    if (!palettes) palettes = film_palettes(film.plan, count, planet, common, changed);
     film.plan.take_palettes(*palettes);
     return film;
   };
@@ -345,7 +390,10 @@ void fly(FlyArguments& arguments, const Common& common) {
                            mars::LonLat place, double exaggeration) {
     return surface->at(mars::direction(place), exaggeration).height_m;
   };
-  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, planet, terrain);
+  const std::unique_ptr<FlightGround> ground = ground_of(arguments, common, flight, planet);
+  ChangedPlanet changed;
+  if (ground) changed = [&](const scripts::GroundState& state) { return ground->planet(state); };
+  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, planet, terrain, changed);
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   check_parts(arguments, session, request.shard, common.quiet);
@@ -360,7 +408,11 @@ void fly(FlyArguments& arguments, const Common& common) {
     std::fprintf(stderr, "vpe: %s\n", palette_text(first.settings).c_str());
   }
   require_known_objects(arguments.flight, flight, plan.path(), base);
-  if (!arguments.allow_underground) require_above_ground(arguments.flight, plan, terrain);
+  if (!arguments.allow_underground) {
+    require_above_ground(arguments.flight, plan, [&](mars::LonLat place, double exaggeration, double time_s) {
+      return ground ? ground->height_m(place, exaggeration, time_s) : terrain(place, exaggeration);
+    });
+  }
 
   FrameOverlays overlays(planet);
   load_names(overlays, base, flight);
@@ -370,6 +422,7 @@ void fly(FlyArguments& arguments, const Common& common) {
     reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole,
                         scripts::version_of(flight));
   if (reports.log) reports.log->objects(flight.objects);
+  if (reports.log) reports.log->ground(flight.reliefs, flight.patches);
   auto start = std::chrono::steady_clock::now();
   bool is_begun = false;
   Common rest = common;
@@ -394,15 +447,23 @@ void fly(FlyArguments& arguments, const Common& common) {
     options.threads = common.threads;
     return std::make_unique<CarriedDrawer>(first_images, planet, options);
   };
-  session.make(plan, reports, arguments.image, {renderer, carried}, overlays, common.quiet);
+  session.make(plan, reports, arguments.image, {renderer, carried, changed}, overlays, common.quiet);
   if (!common.quiet) print_failures(reports.failures);
+  if (ground && !common.quiet && count(session.frames()).made > 0 && ground->is_coarser()) {
+    std::fprintf(
+        stderr,
+        "vpe: note: the ground that %s changes has coarser posts than it asks for, since a patch has a limit of "
+        "tiles; spacing= in its reliefs says what they are\n",
+        arguments.flight.c_str());
+  }
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
-  session.finish({version(), meta.identity, meta.illustration, mars::synthetic_statement(meta.sources),
+  const bool illustration = meta.illustration || ground;
+  session.finish({version(), meta.identity, illustration, statement_of(meta, ground.get()),
                   fs::path(arguments.flight).filename().string(), flight.view.fps, flight.view.width,
-                  flight.view.height, arguments.frames, request.shard, plan.palettes()});
+                  flight.view.height, arguments.frames, request.shard, plan.palettes(), names_of(plan.path())});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(arguments, common, session, seconds, meta.illustration, sun, plan);
+  report(arguments, common, session, seconds, illustration, sun, plan);
 }
 
 }  // namespace

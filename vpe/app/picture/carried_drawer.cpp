@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "paging/planet/planet_user.h"
 #include "paging/surface/distance.h"
 #include "vpe/app/scene/object_renderer.h"
 #include "vpe/core/appearance/shading.h"
@@ -88,6 +89,12 @@ CarriedDrawer::CarriedDrawer(core::Renderer& renderer, const std::shared_ptr<con
                                                              .threads = options.threads}),
                            planet, {.threads = options.threads});
   rays_ = own_rays_.get();
+}
+
+void CarriedDrawer::change_planet(const std::shared_ptr<const paging::PlanetFile>& planet) {
+  has_first_ = false;
+  if (own_rays_) paging::change_planet(*own_rays_, planet);
+  surface_.change_planet(planet);
 }
 
 void CarriedDrawer::finish(const core::DrawRequest& request, core::Frame& frame) {

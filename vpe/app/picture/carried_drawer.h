@@ -53,6 +53,10 @@ class CarriedDrawer {
   CarriedDrawer(core::Renderer& renderer, const std::shared_ptr<const paging::PlanetFile>& planet,
                 const CarriedDrawerOptions& options);
 
+  // Goes over to another version of the planet, to which the renderer of the first images has gone over. Forgets the first
+  // image. Throws what paging::change_planet() throws.
+  void change_planet(const std::shared_ptr<const paging::PlanetFile>& planet);
+
   // Draws an image in full: the image that `renderer` draws, to the bit where it draws rays. With a margin, pixels on each
   // side, more than the image is drawn (core::with_margin), so that less is left of the images that are carried from it;
   // then ranges are the same but for rounding.

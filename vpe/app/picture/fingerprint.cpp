@@ -82,6 +82,7 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
     digest.add("reuse").add(origin.reuse->key).add(origin.reuse->most_added_px);
     digest.add(std::int64_t{origin.reuse->margin_px.x}).add(std::int64_t{origin.reuse->margin_px.y});
   }
+  for (const std::string& line : origin.ground) digest.add("ground").add(line);
   return digest.hex();
 }
 

@@ -1,5 +1,6 @@
 #include "vpe/app/picture/frame_overlays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,14 @@ FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
     : planet_(std::move(planet)),
       surface_(planet_, std::size_t{16} << 20),
       has_imagery_(planet_->meta().finest_image_level >= 0) {}
+
+void FrameOverlays::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  if (planet == planet_) return;
+  surface_.change_planet(planet);
+  planet_ = std::move(planet);
+  for (auto& [file, names] : names_)
+    std::ranges::fill(names.height_m, std::numeric_limits<double>::quiet_NaN());
+}
 
 void FrameOverlays::load(const core::Overlays& overlays) {
   if (overlays.names.empty() || names_.contains(overlays.names)) return;

@@ -35,6 +35,9 @@ class FrameOverlays {
  public:
   explicit FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet);
 
+  // Goes over to another version of the planet: heights of places are looked up again.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
+
   // Reads the gazetteer that the settings name, once. Throws what core::read_gazetteer() throws.
   void load(const core::Overlays& overlays);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "paging/planet/planet_user.h"
 #include "paging/shading/terrain_shader.h"
 #include "paging/surface/height_difference.h"
 #include "vpe/app/picture/comparison.h"
@@ -153,6 +154,12 @@ ViewPalette::ViewPalette(std::shared_ptr<const paging::PlanetFile> planet, const
           {.memory_bytes = std::min(memory_bytes(common) / 4, kMostSampleBytes), .threads = common.threads})) {}
 
 ViewPalette::~ViewPalette() = default;
+
+void ViewPalette::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  if (planet == planet_) return;
+  paging::change_planet(*rays_, planet);
+  planet_ = std::move(planet);
+}
 
 void ViewPalette::add(const core::DrawRequest& request) {
   is_circle_ = request.settings.colour == core::Colour::kAspect;

@@ -52,6 +52,9 @@ class ViewPalette {
   ViewPalette(std::shared_ptr<const paging::PlanetFile> planet, const Common& common);
   ~ViewPalette();
 
+  // Goes over to another version of the planet. What was added stays.
+  void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
+
   // Adds the values, of the colour of its settings, that every pixel of a request's view shows; ground without
   // data has none. Elevations are those of the pixels; slopes those that are painted, to within 0.2 degrees.
   // Differences are those of the nearest posts, which are about as far apart as the pixels. Throws what renderers throw,

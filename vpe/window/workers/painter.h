@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scripts/ground_tracks.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
@@ -25,9 +26,11 @@ struct ImageRequest {
   bool is_full = true;          // not made coarser, nor smaller, to save time
   double px_per_screen_px = 1;  // of the image, along a side
   std::optional<core::StereoLayout> stereo;
-  double eye_base_m = 0;           // with stereo; > 0
-  double convergence_m = 0;        // with stereo; where both images coincide; 0: infinitely far
-  double flight_time_s = 0;        // for the overlay of that name
+  double eye_base_m = 0;     // with stereo; > 0
+  double convergence_m = 0;  // with stereo; where both images coincide; 0: infinitely far
+  double flight_time_s = 0;  // for the overlay of that name
+  // How the flight that is followed changes the ground, at flight_time_s; null: it does not.
+  std::shared_ptr<const scripts::GroundTracks> ground;
   std::optional<double> logged_s;  // its time in the log while a session is recorded
   bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is one grid
   // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
