@@ -35,7 +35,7 @@ struct FingerprintOrigin {
     glm::ivec2 margin_px{};  // of the key frame
   };
   std::optional<Reuse> reuse;
-  std::vector<std::string> ground;  // what changes the ground of the planet file; a line each
+  std::vector<std::string> ground = {};  // what changes the ground of the planet file; a line each
 };
 
 // Returns a digest of everything that the image depends on, so that equal fingerprints mean equal images. Files
