@@ -13,7 +13,7 @@ using nlohmann::json;
 using vpe::core::RgbImage;
 
 constexpr int kFrames = 8;
-constexpr const char* kPit = "kind=crater lon=-74 lat=-11 radius=120000 depth=9000";
+constexpr const char* kPit = "kind=crater lon=-74 lat=-11 radius=120000 depth=9000 ejecta_ratio=2";
 
 class FilmGround : public AppTest, public ::testing::WithParamInterface<const char*> {
  protected:
@@ -114,7 +114,7 @@ TEST_P(FilmGround, OnlyChangedFramesAreMadeAgain) {
 
 TEST_P(FilmGround, FilesChangeItToo) {
   const std::string works =
-      "version = 1\n[[relief]]\nkind = \"crater\"\nlon = -74\nlat = -11\nradius_m = 120000\n";
+      "version = 1\n[[relief]]\nkind = \"crater\"\nlon = -74\nlat = -11\nradius_m = 120000\nejecta_ratio = 2\n";
   write_text(dir_ / "works.relief.toml", works + "depth_m = 9000\n");
   write_text(dir_ / "f.flight",
              flight("at 0 patch works.relief.toml mix=0\nat 1 patch works.relief.toml mix=1\n"));
