@@ -131,6 +131,29 @@ TEST_P(FilmGround, FilesChangeItToo) {
   EXPECT_EQ(again["made"], kFrames - 1);
 }
 
+// A plateau of a raster rises evenly out of the planet.
+TEST_P(FilmGround, ARasterIsMixedIn) {
+  Dem dem;
+  dem.width = dem.height = 24;
+  dem.west_deg = -77;
+  dem.north_deg = -8;
+  dem.cell_deg = 0.25;
+  dem.height_m = [](int, int) { return 25'000.0; };
+  write_dem(dir_ / "plateau.tif", dem);
+  write_text(dir_ / "still.flight", flight(""));
+  write_text(dir_ / "f.flight", flight("at 0.5 patch plateau.tif mix=0\nat 1.5 patch plateau.tif mix=1\n"));
+  EXPECT_EQ(fly("film")["ground"], json({"patch plateau.tif"}));
+  fly("still", {}, "still.flight");
+  for (const int k : {0, 1, 2}) EXPECT_EQ(difference("film", k, "still", k), 0) << k;
+  for (int k = 2; k < 6; ++k)
+    EXPECT_GT(difference("film", k + 1, "still", k + 1), difference("film", k, "still", k)) << k;
+  EXPECT_EQ(difference("film", 6, "film", 7), 0);
+  // Its bytes count.
+  dem.height_m = [](int, int) { return 24'000.0; };
+  write_dem(dir_ / "plateau.tif", dem);
+  EXPECT_EQ(fly("film")["made"], kFrames - 3);
+}
+
 TEST_P(FilmGround, LogsAreTheSameFlight) {
   write_text(dir_ / "f.flight", growing());
   fly("film", {"--log", "log.flight"});
