@@ -169,14 +169,17 @@ class ChangedViews : public FlightGroundTest, public ::testing::WithParamInterfa
     if (GetParam() == Backend::kPolygon) return renderer(planet);
     return vpe::voxel::make_ray_renderer(planet, {std::size_t{256} << 20, 2});
   }
+
+  // Draws views of ground at any times of a flight that changes it, and compares them with the reference surface.
+  void expect_certified_views(int views);
 };
 
-TEST_P(ChangedViews, KeepTheirCertificates) {
+void ChangedViews::expect_certified_views(int views) {
   const Planet planet = base();
   FlightGround ground = ground_of(planet, growing());
   const std::unique_ptr<core::Renderer> draw = make(planet);
   Random random(10);
-  for (int n = 0; n < 24; ++n) {
+  for (int n = 0; n < views; ++n) {
     const double time_s = random.uniform(0.5, 5);
     const Planet now = ground.planet(ground.tracks().at(time_s));
     paging::change_planet(*draw, now);
@@ -205,6 +208,12 @@ TEST_P(ChangedViews, KeepTheirCertificates) {
   }
 }
 
+TEST_P(ChangedViews, KeepTheirCertificates) { expect_certified_views(24); }
+
+using LongChangedViews = ChangedViews;
+
+TEST_P(LongChangedViews, KeepTheirCertificatesInTwoHundred) { expect_certified_views(200); }
+
 TEST_P(ChangedViews, AreThoseOfANewRenderer) {
   const Planet planet = base();
   FlightGround ground = ground_of(planet, growing());
@@ -224,6 +233,8 @@ TEST_P(ChangedViews, AreThoseOfANewRenderer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, ChangedViews, testing::Values(Backend::kPolygon, Backend::kRay),
+                         [](const auto& made) { return std::string(core::to_string(made.param)); });
+INSTANTIATE_TEST_SUITE_P(LongBackends, LongChangedViews, testing::Values(Backend::kPolygon, Backend::kRay),
                          [](const auto& made) { return std::string(core::to_string(made.param)); });
 
 TEST_F(FlightGroundTest, FilesAreMixedIn) {
