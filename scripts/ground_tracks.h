@@ -1,4 +1,4 @@
-// How a flight changes the ground: reliefs and patches at any time.
+// Changes of the ground by a flight: reliefs and patches at any time.
 //
 //   - A relief is there from its line with `kind` on. Each of its numbers runs on a monotone curve (monotone_spline.h)
 //     through the lines that give it, angles the short way, and is held after the last of them. Words, `octaves` and

@@ -1,4 +1,4 @@
-// What patches read of their planet's tiles again and again, decoded and kept.
+// Keeps decoded what patches read of their planet's tiles again and again.
 #pragma once
 
 #include <map>

@@ -18,7 +18,7 @@ class MemoryTiles : public TileStore {
 
   void put_tile(const NodeRow& row, const TilePayload& payload) override;
 
-  // Of a tile of the planet they return what read_posts() and the meters take for the same: posts on borders with
+  // Return, of a tile of the planet, what read_posts() and the meters take for the same: posts on borders with
   // coarser neighbours lie on the edges of these already. Throw PlanetError.
   Bytes heights(const lod::TileKey& key) override;
   Bytes nodata(const lod::TileKey& key) override;

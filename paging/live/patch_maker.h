@@ -22,7 +22,7 @@ struct PatchOptions {
   // bounds instead of measurements. Much quicker to make. Rays lose nothing; triangles draw more of them near the
   // change. False: meshes and errors are those that the builder would make.
   bool full_grids = false;
-  // As BuildOptions::mesh_ratio. Larger: more triangles and smaller errors.
+  // Has the meaning of BuildOptions::mesh_ratio. Larger: more triangles and smaller errors.
   double mesh_ratio = 256;
   // Finest distance of posts in metres; 0: what the change asks for. Larger: quicker and coarser.
   double finest_spacing_m = 0;
@@ -44,12 +44,13 @@ struct MadePatch {
 // the next one. The ground below the change is the planet's own surface, so that no rasters are needed. Any number of
 // threads may call make() at once.
 //
-// What is made, for one planet, change and options, does not depend on the number of threads nor on earlier calls:
+// The result, for one planet, change and options, does not depend on the number of threads nor on earlier calls:
 //   - A post has the height of the changed surface at its direction, rounded to the planet's step of heights. A build from
 //     the planet's sources rounds once and not twice, so posts of the planet's spacing differ by one step at most. Finer
 //     posts lie on the planet's flat facets, changed.
 //   - Where there is no data the height is the planet's, which no place shows.
-//   - Errors that tiles state are bounds, with either kind of meshes. Borders meet as those of built tiles do.
+//   - Errors that tiles state are bounds, with either kind of meshes. Borders meet as those of built tiles do, but for
+//     a case of docs/design/open-points.md.
 class PatchMaker {
  public:
   // Keeps at most about `budget_bytes` of the planet's ground. Smaller: it is sampled again more often.

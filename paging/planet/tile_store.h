@@ -1,4 +1,4 @@
-// Where the steps of a build put tiles and read them back: a planet file that grows, or tiles in memory.
+// A store in which the steps of a build put tiles and read them back: a planet file that grows, or tiles in memory.
 #pragma once
 
 #include "lod/tree/tile_key.h"

@@ -1,4 +1,4 @@
-// What has changed between two planets: areas, differences of height, volumes.
+// Measures of what has changed between two planets: areas, differences of height, volumes.
 //
 // The difference is later - earlier in one direction, of the reference surfaces, in metres along the vertical. It is taken at
 // the posts of the finest tiles that either planet has at a place, and is linear over their triangles (posts.h). Integrals

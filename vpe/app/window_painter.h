@@ -24,9 +24,9 @@ core::DrawRequest for_window_rays(core::DrawRequest request, bool within_toleran
 window::ImageRequest as_drawn(window::ImageRequest request);
 
 // Draws the window's image requests. Holds one backend at a time to keep within --memory, and gives each of two planets
-// that are compared a half of it: after a change of the
-// backend, of exaggeration or of the kind of shading, no loaded tile fits, and the first image waits for its tiles for
-// `change_s` at most, so that the window shows the former image until then. One thread at a time.
+// that are compared a half of it. After a change of the backend, of exaggeration or of the kind of shading no loaded tile
+// fits, and the first image waits for its tiles for `change_s` at most, so that the window shows the former image until
+// then. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
   static constexpr double kChange_s = 1.5;
@@ -56,7 +56,7 @@ class WindowPainter : public window::Painter {
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
-  // Of the planet that this one is compared with, once it is needed.
+  // Draw the planet that this one is compared with, once it is needed.
   std::unique_ptr<core::Renderer> earlier_renderer_;
   std::unique_ptr<FrameOverlays> earlier_overlays_;
   StereoMethod stereo_;
