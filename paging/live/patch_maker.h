@@ -49,8 +49,7 @@ struct MadePatch {
 //     the planet's sources rounds once and not twice, so posts of the planet's spacing differ by one step at most. Finer
 //     posts lie on the planet's flat facets, changed.
 //   - Where there is no data the height is the planet's, which no place shows.
-//   - Errors that tiles state are bounds, with either kind of meshes. Borders meet as those of built tiles do, but for
-//     a case of docs/design/open-points.md.
+//   - Errors that tiles state are bounds, with either kind of meshes. Borders meet as those of built tiles do.
 class PatchMaker {
  public:
   // Keeps at most about `budget_bytes` of the planet's ground. Smaller: it is sampled again more often.
