@@ -5,11 +5,9 @@
 #include <optional>
 
 #include "objects/files/scene_file.h"
+#include "vpe/explore/files/kept_file.h"
 
 namespace vpe::explore {
-
-// Returns the name under which the former state of a file is kept: FILE~.
-std::filesystem::path kept_name(const std::filesystem::path& file);
 
 // Writes a scene to a file. A file that is there is kept as kept_name() if it holds what a scene has not, such as comments
 // and the order of its lines, or is no scene, or if `keeps_former`; an earlier kept file is replaced. Returns the kept file, or
