@@ -50,6 +50,7 @@ class Surface {
   void change_planet(std::shared_ptr<const PlanetFile> planet);
 
   const PlanetFile& planet() const { return *planet_; }
+  const std::shared_ptr<const PlanetFile>& shared_planet() const { return planet_; }
   double planet_radius_m() const { return planet_->radius_m(); }
 
   // Returns the point of the surface in a direction (any length but 0). Rounding error <= 4e-9 m * radius /

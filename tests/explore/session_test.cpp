@@ -268,6 +268,38 @@ TEST(Session, AnOffsetOfThePlatformStaysAboveTheGround) {
   EXPECT_GT(session.height_m(), before_m + 0.5) << "a motion up takes effect at once";
 }
 
+TEST(Session, StandsOnGroundThatHasChanged) {
+  const test_support::TempDir folder;
+  const auto raised = std::make_shared<const paging::Surface>(
+      test_support::build_fake(folder / "raised.vpe", test_support::FakeElevation([](const glm::dvec3& d) {
+                                 return test_support::bumpy_height(d) + 9000;
+                               }),
+                               200'000),
+      std::size_t{8} << 20);
+  const glm::dvec3 up = mars::direction({10, 0});
+  const double ground_m = surface()->at(up).height_m;
+  Session session = session_at({10, 0, ground_m + 2000, 0, -90, 0});
+  const std::uint64_t changes = session.changes();
+  session.set_changed_surface(raised);
+  EXPECT_EQ(session.shared_surface(), raised);
+  EXPECT_EQ(session.changes(), changes) << "the image has shown it already";
+  EXPECT_NEAR(session.ground().height_m(up), ground_m + 9000, 60);
+  EXPECT_GT(session.pose().alt_m, session.ground().height_m(up)) << "the camera is above the ground";
+  session.set_changed_surface(surface());
+  EXPECT_EQ(session.ground().height_m(up), ground_m);
+  // A flight keeps the terrain that its poses count from.
+  const auto flight =
+      scripts::parse_flight("flight 1\nat 0 pose lon=10 lat=0 height=20000 pitch=-90\nat 9 end\n", "F");
+  ASSERT_TRUE(flight.flight);
+  ASSERT_EQ(session.flights().load(*flight.flight), "");
+  session.scrub(1);
+  const double alt_m = session.pose().alt_m;
+  session.set_changed_surface(raised);
+  session.scrub(2);
+  EXPECT_EQ(session.pose().alt_m, alt_m);
+  EXPECT_NEAR(session.height_m(), 11000, 60);
+}
+
 TEST(DrawChooser, AFlightDecidesWhatTheUserDoesNotChange) {
   const scripts::ParsedFlight parsed = scripts::parse_flight(
       "flight 1.1\nat 0 pose lon=0 lat=0 alt=1000\nat 1 view backend=ray\nat 2 view eyes=ou base=7 convergence=50\n"

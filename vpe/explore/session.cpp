@@ -53,6 +53,12 @@ void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
   ++changes_;
 }
 
+void Session::set_changed_surface(std::shared_ptr<const paging::Surface> surface) {
+  surface_ = std::move(surface);
+  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  if (!follows_) pose_ = mover_.put(pose_, ground_);
+}
+
 std::optional<mars::LonLat> Session::place_at(const core::View& shown, glm::dvec2 xy) const {
   const glm::dvec3 ray = core::pixel_ray(shown, xy.x, xy.y);
   const double range_m = ground_.cast_m(shown.camera.position_m, ray);

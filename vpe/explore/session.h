@@ -63,6 +63,10 @@ class Session {
   const paging::Surface& surface() const { return *surface_; }
   // Uses another surface of the same body from now on. The camera stays, but above the ground.
   void set_surface(std::shared_ptr<const paging::Surface> surface);
+  // Uses the surface of the same planet after its ground has changed, as images show it. The camera stays, but above the
+  // ground. Flights keep their terrain, and no image is due because of it.
+  void set_changed_surface(std::shared_ptr<const paging::Surface> surface);
+  const std::shared_ptr<const paging::Surface>& shared_surface() const { return surface_; }
   double height_m() const;  // of the camera above the ground
   // Returns the view of the camera: pose, head and screen.
   core::View view() const;
