@@ -18,15 +18,6 @@ class DrawingTest : public ExploreWindowTest {
  protected:
   std::span<const explore::Drawings::Shared> drawings() { return window_->drawing().drawings().all(); }
 
-  // Returns the place under a position of the window.
-  mars::LonLat under(double x, double y) {
-    const core::View view = window_->session().view();
-    const double side = x - (960 - view.width);
-    const glm::dvec3 ray = core::pixel_ray(view, side, y);
-    return mars::lon_lat(view.camera.position_m +
-                         ray * window_->session().ground().cast_m(view.camera.position_m, ray));
-  }
-
   void draw_triangle(double y = 200) {
     click("Polygon");
     click(600, y);

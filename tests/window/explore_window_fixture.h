@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "tests/paging/planet_fixture.h"
@@ -49,6 +51,52 @@ class ExploreWindowTest : public WindowTest<ExploreWindow> {
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
     opening_message_ = window_->state().message;
     focus();
+  }
+
+  // Returns how far right the view begins.
+  double left() { return window_->display().size().first - window_->session().view().width; }
+  mars::LonLat under(double x, double y) {
+    const auto place = window_->session().place_at({x - left(), y});
+    if (!place) throw std::runtime_error("there is no ground");
+    return *place;
+  }
+  // Returns where a place is in the window.
+  glm::dvec2 seen(mars::LonLat place) {
+    const glm::dvec3 up = mars::direction(place);
+    const explore::TerrainQuery& ground = window_->session().ground();
+    return core::project(window_->session().view(), up * (ground.radius_m + ground.height_m(up))).xy +
+           glm::dvec2(left(), 0);
+  }
+
+  // Enters a text in a field; beside it are buttons and the label.
+  void enter(const std::string& label, const std::string& text) {
+    ASSERT_TRUE(waits_for(label)) << label;
+    const WidgetPlace field = place_of(label);
+    click(field.x0 + 15, (field.y0 + field.y1) / 2);
+    with_control("a");
+    glfwSetClipboardString(window_->display().handle(), text.c_str());
+    with_control("v");
+    key("Return");
+    settle();
+  }
+  void drag(glm::dvec2 from, glm::dvec2 by, int button = 1) {
+    move(from.x, from.y);
+    robot_->press(button);
+    iterate(2);
+    for (int n = 1; n <= 5; ++n) move(from.x + by.x * n / 5, from.y + by.y * n / 5);
+    robot_->release(button);
+    iterate(3);
+  }
+
+  // Returns the colour of the image at a place of the window.
+  glm::dvec3 colour_at(glm::dvec2 xy) {
+    const core::RgbImage& image = window_->image();
+    const double scale = static_cast<double>(image.width) / window_->session().view().width;
+    const auto x = static_cast<int>((xy.x - left()) * scale);
+    const auto y = static_cast<int>(xy.y * scale);
+    const base::Rgb colour = image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                          static_cast<std::size_t>(x)];
+    return {colour.r, colour.g, colour.b};
   }
 
   ExploreSetup extra_;                                                              // options of a test

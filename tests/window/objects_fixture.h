@@ -71,57 +71,12 @@ class ObjectsPanelTest : public ExploreWindowTest {
     return *explore::single_placing(*found);
   }
 
-  double left() { return 960 - window_->session().view().width; }
-  mars::LonLat under(double x, double y) {
-    const auto place = window_->session().place_at({x - left(), y});
-    if (!place) throw std::runtime_error("there is no ground");
-    return *place;
-  }
-  // Returns where a place is in the window.
-  glm::dvec2 seen(mars::LonLat place) {
-    const glm::dvec3 up = mars::direction(place);
-    const explore::TerrainQuery& ground = window_->session().ground();
-    return core::project(window_->session().view(), up * (ground.radius_m + ground.height_m(up))).xy +
-           glm::dvec2(left(), 0);
-  }
-
-  // Enters a text in a field; beside it are buttons and the label.
-  void enter(const std::string& label, const std::string& text) {
-    ASSERT_TRUE(waits_for(label)) << label;
-    const WidgetPlace field = place_of(label);
-    click(field.x0 + 15, (field.y0 + field.y1) / 2);
-    with_control("a");
-    glfwSetClipboardString(window_->display().handle(), text.c_str());
-    with_control("v");
-    key("Return");
-    settle();
-  }
-  void drag(glm::dvec2 from, glm::dvec2 by, int button = 1) {
-    move(from.x, from.y);
-    robot_->press(button);
-    iterate(2);
-    for (int n = 1; n <= 5; ++n) move(from.x + by.x * n / 5, from.y + by.y * n / 5);
-    robot_->release(button);
-    iterate(3);
-  }
-
   std::vector<std::filesystem::path> copies() {
     std::vector<std::filesystem::path> found;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "state", none))
       if (entry.path().string().ends_with(".scene.toml")) found.push_back(entry.path());
     return found;
-  }
-
-  // Returns the colour of the image at a place of the window.
-  glm::dvec3 colour_at(glm::dvec2 xy) {
-    const core::RgbImage& image = window_->image();
-    const double scale = static_cast<double>(image.width) / window_->session().view().width;
-    const auto x = static_cast<int>((xy.x - left()) * scale);
-    const auto y = static_cast<int>(xy.y * scale);
-    const base::Rgb colour = image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                          static_cast<std::size_t>(x)];
-    return {colour.r, colour.g, colour.b};
   }
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "relief/files/relief_file.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
@@ -52,6 +53,7 @@ struct ExploreArguments {
   std::string log;
   std::string flight;
   std::string hotspots;
+  std::string reliefs;
   bool print_settings = false;
   bool restores_overlays = true;  // those of the last session
   bool names_backend = false;     // else that of the last session
@@ -176,6 +178,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.bookmarks = vpe::explore::explore_files().bookmarks;
   setup.preferences_file = vpe::explore::explore_files().preferences;
   setup.state = vpe::explore::explore_files().session.parent_path();
+  if (!arguments.reliefs.empty()) (void)relief::read_relief_file(arguments.reliefs);
   if (!arguments.hotspots.empty()) {
     const vpe::explore::ParsedHotspots parsed = vpe::explore::load_hotspots(arguments.hotspots);
     std::string wrong;
@@ -253,7 +256,7 @@ window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> plane
   auto surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
   return {planet, surface,
           [planet, common, stereo] { return std::make_unique<WindowPainter>(planet, common, stereo); },
-          scene_sight(surface)};
+          scene_sight(surface), scene_sight};
 }
 
 // Writes the session file; the scale of letters only if the command line does not say one. Returns "", or what went wrong; there is no file if there is no folder for it.
@@ -312,6 +315,7 @@ void explore(const ExploreArguments& given, const Common& common) {
     }
     if (project) apply(*std::exchange(project, std::nullopt), here, setup);
     setup.planet_file = file;
+    setup.reliefs_file = here.reliefs;
     if (!here.hotspots.empty()) setup.hotspots_file = std::filesystem::absolute(here.hotspots);
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
@@ -345,11 +349,13 @@ void explore(const ExploreArguments& given, const Common& common) {
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     if (const std::string message = shown.objects_message(); !message.empty())
       std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
+    if (const std::string message = shown.reliefs_message(); !message.empty())
+      std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
     for (const std::vector<std::string>& words : shown.unfinished())
       std::fprintf(stderr, "vpe: note: stopped with the window; this continues it: %s\n",
                    shell_line(words).c_str());
     // Flights, logs, hotspots and regions belong to one planet; the appearance stays for the next.
-    here.pose = here.log = here.flight = here.hotspots = "";
+    here.pose = here.log = here.flight = here.hotspots = here.reliefs = "";
     here.image.interest.clear();
     here.names_backend = false;
     here.size = "";
@@ -402,6 +408,9 @@ void add_explore(CLI::App& program, Common& common) {
   command->add_option("--scale", arguments->scale, "Scale of text and panels (default: the monitor's scale)")
       ->check(number_within(0.5, 4));
   command->add_option("--flight", arguments->flight, "Flight file to play and edit; edits are saved to it");
+  command->add_option(
+      "--reliefs", arguments->reliefs,
+      "File of reliefs, *.relief.toml, that change the ground of the view; edited in the panel Ground");
   command->add_option("--hotspots", arguments->hotspots, "File of hotspots: places with a panorama to open");
   command->add_option(
       "--log", arguments->log,
@@ -414,6 +423,8 @@ void add_explore(CLI::App& program, Common& common) {
                 {"before and after, on both sides of a line", "vpe explore after.vpe --compare before.vpe"},
                 {"begin at a place, in ray casting, with shadows",
                  "vpe explore mars.vpe --pose -59.2,-13.7,8000,90,-10 --backend ray --set shadows=on"},
+                {"try a crater and a dam on the ground, and save them",
+                 "vpe explore mars.vpe --reliefs works.relief.toml"},
                 {"continue a project that Ctrl+S has saved in the window", "vpe explore work.vpeproj"},
                 {"record the session as a flight", "vpe explore mars.vpe --log session.flight"}});
   command->callback([arguments, command, &common] {

@@ -61,10 +61,14 @@ core::DrawResult WindowPainter::with_overlays(const core::DrawRequest& request, 
 
 void WindowPainter::change_ground(const window::ImageRequest& request) {
   std::shared_ptr<const paging::PlanetFile> next = planet_;
-  if (request.ground) {
-    if (!ground_ || !(ground_->tracks() == *request.ground))
-      ground_ = std::make_unique<FlightGround>(planet_, *request.ground, "flight", common_);
-    next = ground_->planet(request.ground->at(request.flight_time_s));
+  if (request.ground || request.reliefs) {
+    const scripts::GroundTracks tracks = request.ground ? *request.ground : scripts::GroundTracks();
+    if (!ground_ || !(ground_->tracks() == tracks))
+      ground_ = std::make_unique<FlightGround>(planet_, tracks, "flight", common_);
+    scripts::GroundState state = tracks.at(request.flight_time_s);
+    if (request.reliefs)
+      state.reliefs.insert(state.reliefs.end(), request.reliefs->begin(), request.reliefs->end());
+    next = ground_->planet(state);
   }
   if (next == shown_) return;
   // If one of them fails, all are made anew.
@@ -211,6 +215,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   }
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;
+  if (shown_ != planet_) drawn.changed = shown_;
   const bool has_other_palette = take_palette(draw_request, drawn);
   if (request.stereo) {
     draw_pair(request, draw_request, drawn);

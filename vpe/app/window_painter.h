@@ -44,7 +44,7 @@ class WindowPainter : public window::Painter {
   CarriedDrawer* drawer_for(const core::DrawRequest& request, Eye eye);
   void draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
                  window::DrawnImage& drawn);
-  // Goes over to the planet as the flight has changed it at the request's time.
+  // Goes over to the planet as the flight has changed it at the request's time, and then its reliefs.
   void change_ground(const window::ImageRequest& request);
   bool take_palette(core::DrawRequest& request, window::DrawnImage& drawn);
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "relief/files/relief_file.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/explore/command_words.h"
@@ -76,6 +77,10 @@ void ExploreWindow::open_file(const std::string& name) {
   const fs::path whole = fs::absolute(file).lexically_normal();
   if (whole.extension() == ".flight") return open_flight(whole);
   if (explore::is_project_file(whole.string())) return open_project_file(whole);
+  if (relief::is_relief_path(whole)) {
+    files_.add_recent(whole.string());
+    return reliefs_.open(whole);
+  }
   if (whole.extension() == ".toml") {
     files_.add_recent(whole.string());
     return objects_.open(whole, session_);
@@ -125,6 +130,11 @@ void ExploreWindow::make(const MakeRequest& request) {
   // They are made by commands, which read the file.
   if (objects_.editor().is_changed())
     return show_message("save the scene first (panel Objects): images and films are made of its file", true);
+  if (reliefs_.reliefs() && request.kind != MadeKind::kFilm)
+    return show_message(
+        "images are made of the planet's file: put the reliefs into a planet first (panel Ground); F12 saves the "
+        "image of the window",
+        true);
   explore::MakeOptions options;
   options.planet = setup_.planet_file.string();
   options.width_px = request.size.width_px;

@@ -18,7 +18,7 @@ namespace vpe::window {
 
 namespace {
 
-constexpr float kTabLetters = 0.92F;  // of the size of others, so that eight tabs fit
+constexpr float kTabLetters = 0.81F;  // of the size of others, so that nine tabs fit
 
 // A slider that moved under the hand that holds it could not be held: the scale follows at the end.
 void draw_letters(double scale, WindowState& state, Widgets& widgets) {
@@ -226,6 +226,10 @@ void ExploreWindow::draw_tabs() {
   }
   if (tab("Objects")) {
     objects_.draw(session_, widgets_);
+    ImGui::EndTabItem();
+  }
+  if (tab("Ground")) {
+    reliefs_.draw(session_, widgets_);
     ImGui::EndTabItem();
   }
   if (tab("Look")) {

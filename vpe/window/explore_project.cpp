@@ -42,6 +42,7 @@ fs::path whole_path(const fs::path& file) {
 std::string ExploreWindow::open_project() {
   drawing_.join(project_bookmarks_);
   drawing_.join(objects_.editor());
+  drawing_.join(reliefs_.editor());
   map_.set_overlay(&drawing_);
   drawing_.offer(drawing_copy_.abandoned());
   if (!setup_.project) return {};
@@ -62,22 +63,22 @@ bool ExploreWindow::handle_marks(const Event& event) {
   const bool is_over_view = !state_.large_map && !io.WantCaptureMouse && state_.image_error.empty();
   const ImageLayout layout = image_layout();
   // What is held stays in the image of the eye in which it was taken.
-  const bool holds = drawing_.sketch().held() || flight_.holds_pose() || objects_.holds();
+  const bool holds = drawing_.sketch().held() || flight_.holds_pose() || objects_.holds() || reliefs_.holds();
   const int eye = holds ? held_eye_ : layout.eye_at(cursor_);
   if (event.kind == Event::Kind::kPress) held_eye_ = eye;
   std::optional<glm::dvec2> xy;
   if (is_over_view && layout.image_area().holds(cursor_.x, cursor_.y)) xy = layout.xy_of(eye, cursor_);
   const core::View view = eye_image(eye).view;
-  // Of two tools that of the panel that is shown counts.
-  if (objects_.is_placing() && drawing_.sketch().tool()) {
-    if (objects_.is_shown())
-      drawing_.sketch().choose(std::nullopt);
-    else
-      objects_.stop_placing();
+  // Of several tools that of the panel that is shown counts.
+  if (objects_.is_placing() + reliefs_.is_placing() + drawing_.sketch().tool().has_value() > 1) {
+    if (objects_.is_shown() || reliefs_.is_shown()) drawing_.sketch().choose(std::nullopt);
+    if (!objects_.is_shown()) objects_.stop_placing();
+    if (!reliefs_.is_shown()) reliefs_.stop_placing();
   }
   const bool draws = drawing_.sketch().tool().has_value();
   const bool is_typing = io.WantTextInput || panel_focus_.is_on();
   const bool is_mine = (!draws && objects_.handle(event, xy, is_typing, session_, view)) ||
+                       (!draws && reliefs_.handle(event, xy, is_typing, session_, view)) ||
                        drawing_.handle(event, xy, is_typing, session_, view) ||
                        (!draws && flight_.handle(event, xy, session_, view));
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
@@ -155,6 +156,19 @@ void ExploreWindow::keep_scene() {
   if (objects_.update(now_s(), !maker_->is_idle())) frames_due_ = std::max(frames_due_, 1);
   const ObjectsActions actions = objects_.take_actions();
   if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+}
+
+void ExploreWindow::keep_reliefs() {
+  reliefs_.update(now_s());
+  const ReliefsActions actions = reliefs_.take_actions();
+  if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
+  if (!actions.patch) return;
+  const fs::path made = new_file(setup_.folder, "planet-", ".vpe");
+  start_job({JobKind::kMakes,
+             "planet",
+             {"patch", setup_.planet->path(), actions.patch->string(), "-o", made.string()},
+             made,
+             {}});
 }
 
 void ExploreWindow::restore_drawings(const fs::path& copy) {

@@ -20,6 +20,8 @@ constexpr double kSoonest_s = 0.02;
 constexpr double kLatest_s = 0.5;
 // Its margin is this part of its sides at most. Wider: slower images; narrower: their border is seen in quick turns.
 constexpr int kMostMargin = 12;
+// Tiles of a surface whose ground has changed.
+constexpr std::size_t kChangedSurfaceBytes = std::size_t{32} << 20;
 
 // Returns true if something lies over images at a fixed place.
 bool has_fixed_overlay(const core::Overlays& o) {
@@ -54,6 +56,8 @@ void ExploreWindow::request_image() {
     for (const std::string& line : scripts::lines_of(followed->ground()->at(objects_.time_s())))
       ground += "\n" + line;
   }
+  const auto reliefs = reliefs_.reliefs();
+  if (reliefs) ground += "\n" + std::to_string(reliefs_.editor().revision());
   const std::string state =
       std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
       base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects +
@@ -108,6 +112,7 @@ void ExploreWindow::request_image() {
     request.draw.tracks = followed->tracks();
     request.ground = followed->ground();
   }
+  request.reliefs = reliefs;
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));
@@ -159,6 +164,7 @@ bool ExploreWindow::take_image() {
     const std::size_t more = failures.size() - 1;
     show_message(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
+  follow_ground(drawn->changed);
   view_texture_.upload(drawn->image);
   if (!drawn->earlier.pixels.empty()) earlier_texture_.upload(drawn->earlier);
   const glm::ivec2 margin_px = drawn->request.margin_px;
@@ -177,6 +183,30 @@ bool ExploreWindow::take_image() {
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
   if (saves_image_ && drawn_->request.is_full && drawn_->result.settled) save_image();
   return true;
+}
+
+// Lets the session stand on the ground that an image shows.
+void ExploreWindow::follow_ground(const std::shared_ptr<const paging::PlanetFile>& changed) {
+  const std::shared_ptr<const paging::PlanetFile>& shown = changed ? changed : setup_.surface->shared_planet();
+  if (shown == session_.shared_surface()->shared_planet()) return;
+  session_.set_changed_surface(changed ? std::make_shared<const paging::Surface>(changed, kChangedSurfaceBytes)
+                                       : setup_.surface);
+  ground_changed_s_ = now_s();
+}
+
+bool ExploreWindow::measures_other_ground() const { return measured_ != session_.shared_surface(); }
+
+// Measures on the ground of the images once that has been at rest for a while.
+void ExploreWindow::measure_on_ground() {
+  constexpr double kRests_s = 0.4;
+  if (!measures_other_ground()) return;
+  frames_due_ = std::max(frames_due_, 1);
+  if (now_s() - ground_changed_s_ < kRests_s) return;
+  measured_ = session_.shared_surface();
+  measure_.set_surface(measured_, measured_ == setup_.surface ? setup_.open_scene
+                                  : setup_.scenes_on          ? setup_.scenes_on(measured_)
+                                                              : explore::OpenScene());
+  drawing_.set_surface(measured_);
 }
 
 // Runs the rest of an iteration while a panorama is entered. Returns false outside of panoramas.
@@ -330,6 +360,7 @@ void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {
   draw_flight_marks(list, session_, flight_.selected(), eye);
   drawing_.draw_marks(list, session_, under_cursor_, eye);
   objects_.draw_marks(list, session_, eye);
+  reliefs_.draw_marks(list, session_, eye);
   guide_.draw_marks(list, session_, eye);
   if (session_.mouse_use() == explore::MouseUse::kTilt && session_.held_m())
     draw_pivot_mark(list, *session_.held_m(), eye);

@@ -46,6 +46,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       jobs_(setup_.start_job),
       welcome_(search_.places()),
       objects_(setup_.model_ball, setup_.folder, setup_.state, [] { Display::wake(); }),
+      reliefs_(setup_.surface, setup_.folder, setup_.state),
+      measured_(setup_.surface),
       drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
       project_file_(setup_.project_file),
       drawing_copy_(setup_.state, ".vpeproj", "drawings"),
@@ -80,6 +82,10 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   for (const std::string& error : devices_.errors()) add(error);
   if (setup_.flight) add(session_.flights().load(*setup_.flight));
   add(open_project());
+  if (!setup_.reliefs_file.empty()) {
+    reliefs_.open(setup_.reliefs_file);
+    if (const ReliefsActions actions = reliefs_.take_actions(); actions.message_is_error) add(actions.message);
+  }
   const std::vector<std::filesystem::path> abandoned = backup_.abandoned();
   flight_.offer(abandoned);
   if (!errors.empty())
@@ -92,6 +98,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
     show_message("an earlier session left unsaved drawings: 'Restore' in the panel 'Draw' adds them");
   else if (!objects_.abandoned().empty())
     show_message("an earlier session left an unsaved scene: 'Restore' in the panel 'Objects' opens it");
+  else if (!reliefs_.abandoned().empty())
+    show_message("an earlier session left unsaved reliefs: 'Restore' in the panel 'Ground' opens them");
 }
 
 ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
@@ -106,8 +114,8 @@ void ExploreWindow::run() {
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
   return maker_->is_idle() && maps_rest() && measure_.is_at_rest() && drawing_.is_at_rest() &&
-         objects_.is_at_rest() && !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
-         live_.state() == lod::RefinementState::kWaiting;
+         objects_.is_at_rest() && !measures_other_ground() && !session_.is_going() && !session_.is_moving() &&
+         frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
 }
 
 bool ExploreWindow::maps_rest() const {
@@ -190,7 +198,7 @@ bool ExploreWindow::step(double wait_s) {
   }
   follow_caught_cursor();
   display_.show_hand(session_.mouse_use() == explore::MouseUse::kHold || flight_.holds_pose() ||
-                     drawing_.sketch().held().has_value() || objects_.holds());
+                     drawing_.sketch().held().has_value() || objects_.holds() || reliefs_.holds());
   const auto now = Clock::now();
   // The time of a rest does not count as motion.
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
@@ -214,6 +222,7 @@ bool ExploreWindow::step(double wait_s) {
   // The next image is drawn while the last one is shown.
   const bool is_new = take_image();
   request_image();
+  measure_on_ground();
   measure_.set_scene(sight_scene());
   if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest() || objects_.is_moving())
     frames_due_ = std::max(frames_due_, 1);
@@ -248,6 +257,8 @@ void ExploreWindow::replace_planet(ShownPlanet next) {
   if (large_map_ != nullptr) large_map_->set_planet(setup_.planet);
   measure_.set_surface(setup_.surface, setup_.open_scene);
   drawing_.set_surface(setup_.surface);
+  reliefs_.set_surface(setup_.surface);
+  measured_ = setup_.surface;
   maker_ = std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); });
   show_message("the planet is complete");
 }
@@ -257,6 +268,7 @@ void ExploreWindow::keep_work(bool is_busy) {
   take_drawing_actions();
   keep_drawings();
   keep_scene();
+  keep_reliefs();
   if (!ImGui::IsAnyMouseDown()) {
     if (const std::string error = backup_.update(session_.flights().editor()); !error.empty())
       show_message(error, true);

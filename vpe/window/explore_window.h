@@ -42,6 +42,7 @@
 #include "vpe/window/panels/search_box.h"
 #include "vpe/window/panels/status_line.h"
 #include "vpe/window/panels/welcome.h"
+#include "vpe/window/reliefs/reliefs_panel.h"
 #include "vpe/window/session_recorder.h"
 #include "vpe/window/swipe_line.h"
 #include "vpe/window/ui/display.h"
@@ -104,6 +105,7 @@ struct ExploreSetup : ShownPlanet {
   std::vector<core::Place> places;      // that the search box finds
   std::string places_file;              // the same, for names over the image; empty: there is none
   bool greets = false;                  // says at the start how to move
+  std::string reliefs_file;             // of reliefs that are shown at the start; empty: none
   explore::ModelBall model_ball;  // of objects that are edited; called on a thread; empty: they count as 1 m
   // Returns a command that draws the present view, to be copied. Empty: there is none.
   std::function<std::string(const explore::Session&)> command_line;
@@ -169,8 +171,11 @@ class ExploreWindow {
   explore::Project project() const;
   // Does the same for a scene of objects.
   std::string objects_message() { return objects_.exit_message(); }
+  // Does the same for reliefs.
+  std::string reliefs_message() { return reliefs_.exit_message(); }
   DrawingPanel& drawing() { return drawing_; }
   ObjectsPanel& objects() { return objects_; }
+  ReliefsPanel& reliefs() { return reliefs_; }
   const MeasurePanel& measure() const { return measure_; }
   // Runs one iteration of the event loop: events, devices, panels, an image if one is due. Waits for events for
   // at most `wait_s` seconds if there is nothing to do. Returns false if the window was closed.
@@ -280,6 +285,10 @@ class ExploreWindow {
   explore::MotionMode key_mode() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
+  // explore_view.cpp:
+  void follow_ground(const std::shared_ptr<const paging::PlanetFile>& changed);
+  void measure_on_ground();
+  bool measures_other_ground() const;
   void show_message(std::string text, bool is_error = false);
   void clear_message();
   void save_image();
@@ -310,6 +319,7 @@ class ExploreWindow {
   void save_project();
   void keep_drawings();
   void keep_scene();
+  void keep_reliefs();
   void restore_drawings(const std::filesystem::path& copy);
   std::string act_on_project_bookmark(const explore::Action& action);
   double now_s() const;
@@ -335,6 +345,9 @@ class ExploreWindow {
   bool is_tidy_ = false;  // freed memory was returned since the last motion
   Welcome welcome_;
   ObjectsPanel objects_;
+  ReliefsPanel reliefs_;
+  std::shared_ptr<const paging::Surface> measured_;  // that measurements are of
+  double ground_changed_s_ = 0;                      // when images showed other ground last
   DrawingPanel drawing_;
   explore::BookmarkList project_bookmarks_;
   std::filesystem::path project_file_;  // empty: no project is open

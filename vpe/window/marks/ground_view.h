@@ -22,6 +22,7 @@ class GroundView {
   GroundView(const explore::Session& session, const core::View& view) : session_(session), view_(view) {}
 
   const core::View& view() const { return view_; }
+  double radius_m() const { return session_.ground().radius_m; }
   // Returns the point of the ground as drawn.
   glm::dvec3 on_ground(const glm::dvec3& direction) const {
     return direction * (session_.ground().radius_m + session_.ground().height_m(direction));

@@ -21,9 +21,9 @@ constexpr const char* kMouseHelp[][2] = {
     {"double click", "fly there"},
     {"with a tool of Draw",
      "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},
-    {"in the panel Objects",
+    {"in the panels Objects, Ground",
      "click: select; drag: move; with Place, click or V: place; Delete; while following, drag: turn; Esc: end"},
-    {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project, or in Objects the scene"},
+    {"Ctrl + Z, Ctrl + Shift + Z, Ctrl + S", "undo, redo, save the project, the scene, or the reliefs"},
     {"on the map",
      "click: fly there; Ctrl + click: add a waypoint; Alt + drag: turn the camera; (Ctrl +) Shift + drag: "
      "region of interest"},

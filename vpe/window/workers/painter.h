@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "paging/planet/planet_file.h"
+#include "relief/spec.h"
 #include "scripts/ground_tracks.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/core/backend.h"
@@ -31,6 +33,8 @@ struct ImageRequest {
   double flight_time_s = 0;  // for the overlay of that name
   // How the flight that is followed changes the ground, at flight_time_s; null: it does not.
   std::shared_ptr<const scripts::GroundTracks> ground;
+  // What changes the ground after that; null: nothing.
+  std::shared_ptr<const std::vector<relief::ReliefSpec>> reliefs;
   std::optional<double> logged_s;  // its time in the log while a session is recorded
   bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is one grid
   // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
@@ -55,6 +59,8 @@ struct DrawnImage {
   core::RgbImage earlier;
   std::vector<warp::ImageGrid> earlier_grids;
   std::vector<float> range_m;  // of its pixels, as core::Frame::range_m; empty unless the request keeps it
+  std::shared_ptr<const paging::PlanetFile>
+      changed;                               // with the ground that the image shows; null: as it is in the file
   std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
   std::string error;  // empty if the image was drawn

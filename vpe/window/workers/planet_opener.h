@@ -28,6 +28,8 @@ struct ShownPlanet {
   // Opens scenes of objects on the planet, for lines of sight; called on the thread that measures. Empty: objects do not
   // count.
   explore::OpenScene open_scene = {};
+  // Returns the same for another surface of the planet, whose ground has changed.
+  std::function<explore::OpenScene(std::shared_ptr<const paging::Surface>)> scenes_on = {};
 };
 
 // Makes a planet that takes time, and tells the share of the work that is done, from any thread. Returns nullopt once
