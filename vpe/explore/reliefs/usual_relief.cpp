@@ -79,8 +79,7 @@ std::vector<glm::dvec3> relief_outline(const ReliefSpec& relief, double radius_m
   };
   if (relief.length_m && !relief.radius_m) {
     const double half_x_m = *relief.length_m / 2;
-    const double usual_m =
-        relief.kind == ReliefKind::kDam ? relief.height_m.value_or(0) / 4 : *relief.length_m;
+    const double usual_m = relief.kind == ReliefKind::kDam ? relief.height_m.value_or(0) / 4 : *relief.length_m;
     const double half_y_m = relief.width_m.value_or(usual_m) / 2;
     const double aside_deg = std::atan2(half_y_m, half_x_m) * 180 / std::numbers::pi;
     for (const double turn_deg : {aside_deg, 180 - aside_deg, 180 + aside_deg, -aside_deg})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 
 #include "vpe/voxel/cast/facet_finder.h"
@@ -19,12 +20,8 @@ double post(const Facets& f, int x, int y) {
                                   : static_cast<double>(f.lines->line(line)[position]);
 }
 
-struct Sample {
-  double rise_m = 0;  // height of the sample above the ground, along the vertical
-  double spacing_m = 0;
-};
-
-Sample sample(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
+// Returns the height of a place above the ground, along the vertical.
+double rise_m(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
   const Facets& f = finder.at(place);
   const mars::ChartPoint p = mars::chart_on(f.face, place);
   const double x = (p.u - f.frame.u0) / f.frame.du;
@@ -42,10 +39,7 @@ Sample sample(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
   const double h = h00 + high * (hm - h00) + low * (h11 - hm);
   const DepthPlane& plane = f.exact_lines != nullptr ? f.exact_lines->reference : f.lines->reference;
   const double depth = plane.w0 + plane.wx * x + plane.wy * y - h / (radius_m * radius_m);
-  const double length = std::sqrt(p.u * p.u + p.v * p.v + 1);
-  // The side of a cell, projected to the sphere.
-  const double spacing = radius_m * std::sqrt(f.frame.du * f.frame.dv) / std::pow(length, 1.5);
-  return {glm::length(place) - length / depth, spacing};
+  return glm::length(place) - std::sqrt(p.u * p.u + p.v * p.v + 1) / depth;
 }
 
 // Bisects between a place above the ground and one below it.
@@ -54,9 +48,90 @@ double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, d
   constexpr double kEnough = 1e-8;
   while (below - above > kEnough * below) {
     const double middle = 0.5 * (above + below);
-    (sample(camera + middle * ray, finder, radius_m).rise_m <= 0 ? below : above) = middle;
+    (rise_m(camera + middle * ray, finder, radius_m) <= 0 ? below : above) = middle;
   }
   return below;
+}
+
+// A ray in the terms of a height grid, from the distance t0 on. On the way of s metres from there the grid position is
+// (x + s dx) / (z + s dz), likewise y, and the ray's height in the terms of posts (HeightGridLines) is (h + s dh) / (z + s dz):
+// straight lines stay straight in the chart, so that a sample takes one division.
+class GridRay {
+ public:
+  GridRay(const glm::dvec3& camera, const glm::dvec3& ray, double t0_m, const Facets& facets, double radius_m)
+      : intervals_(facets.frame.intervals) {
+    const mars::FaceAxes& axes = mars::face_axes(facets.face);
+    const HeightGridFrame& f = facets.frame;
+    const DepthPlane& plane =
+        facets.exact_lines != nullptr ? facets.exact_lines->reference : facets.lines->reference;
+    const glm::dvec3 place = camera + t0_m * ray;
+    const auto at = [&](const glm::dvec3& p, double constant) {
+      const double z = glm::dot(p, axes.out);
+      const double x = (glm::dot(p, axes.right) - f.u0 * z) / f.du;
+      const double y = (glm::dot(p, axes.up) - f.v0 * z) / f.dv;
+      const double h = (plane.w0 * z + plane.wx * x + plane.wy * y - constant) * (radius_m * radius_m);
+      return glm::dvec4(x, y, h, z);
+    };
+    at_ = at(place, 1);
+    per_m_ = at(ray, 0);
+    // The side of a cell, projected to the sphere.
+    const double length = glm::length(place) / at_.w;
+    step_m_ = kReferenceStep * radius_m * std::sqrt(f.du * f.dv) / (length * std::sqrt(length));
+  }
+
+  const glm::dvec4& at() const { return at_; }        // x, y, height, z
+  const glm::dvec4& per_m() const { return per_m_; }  // their changes a metre
+  double step_m() const { return step_m_; }
+  int intervals() const { return intervals_; }
+
+ private:
+  glm::dvec4 at_;
+  glm::dvec4 per_m_;
+  double step_m_ = 0;
+  int intervals_ = 0;
+};
+
+// Returns H of post (x, y) of a grid.
+template <LineFamily family, typename T>
+T post_of(const HeightGridLines<T>& lines, int x, int y) {
+  if constexpr (family == LineFamily::kColumns) return lines.posts[x * lines.side + y];
+  if constexpr (family == LineFamily::kRows) return lines.posts[y * lines.side + x];
+  return lines.line(x - y)[x];
+}
+
+struct Steps {
+  int count =
+      0;  // to the first sample below the ground or, if there is none, out of the grid or beyond the end
+  bool is_below = false;
+};
+
+// Samples a ray within one grid, step by step from its first place, up to `most_m` from there. At least one sample counts
+// as in the grid.
+template <LineFamily family, typename T>
+Steps step_through(const GridRay& ray, const HeightGridLines<T>& lines, double most_m) {
+  const auto size = static_cast<T>(ray.intervals());
+  const int last = ray.intervals() - 1;
+  // Moving by a step at a time would add up rounding.
+  const glm::vec<4, T> at(ray.at());
+  const glm::vec<4, T> by(ray.per_m() * ray.step_m());
+  const int most = static_cast<int>(std::min(most_m / ray.step_m(), 1e9));
+  for (int n = 0;; ++n) {
+    const T steps = static_cast<T>(n);
+    const T inverse = 1 / (at.w + steps * by.w);
+    const T x = (at.x + steps * by.x) * inverse;
+    const T y = (at.y + steps * by.y) * inverse;
+    const bool is_inside = x >= 0 && x <= size && y >= 0 && y <= size;
+    if (n > 0 && (!is_inside || n > most)) return {n, false};
+    const int i = std::clamp(static_cast<int>(x), 0, last);
+    const int j = std::clamp(static_cast<int>(y), 0, last);
+    const T s = x - static_cast<T>(i);
+    const T t = y - static_cast<T>(j);
+    const T h00 = post_of<family>(lines, i, j);
+    const T h11 = post_of<family>(lines, i + 1, j + 1);
+    const T hm = s >= t ? post_of<family>(lines, i + 1, j) : post_of<family>(lines, i, j + 1);
+    const T ground = h00 + std::max(s, t) * (hm - h00) + std::min(s, t) * (h11 - hm);
+    if ((at.z + steps * by.z) * inverse <= ground) return {n, true};
+  }
 }
 
 }  // namespace
@@ -67,14 +142,29 @@ double march(const glm::dvec3& camera, const glm::dvec3& ray, double begin_m, do
   const double rest = half * half - glm::dot(camera, camera) + top_m * top_m;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (!(rest >= 0)) return kNone;
-  const double end = -half + std::sqrt(rest);
-  double t = std::max(begin_m, -half - std::sqrt(rest));
-  double last_t = t;
-  for (bool first = true; t <= end; first = false) {
-    const Sample s = sample(camera + t * ray, finder, radius_m);
-    if (s.rise_m <= 0) return first ? t : crossing(camera, ray, last_t, t, finder, radius_m);
-    last_t = t;
-    t += kReferenceStep * s.spacing_m;
+  const double end_m = -half + std::sqrt(rest);
+  const double first_m = std::max(begin_m, -half - std::sqrt(rest));
+  double above_m = first_m;  // of the last sample
+  for (double t = first_m; t <= end_m;) {
+    const Facets& facets = finder.at(camera + t * ray);
+    const GridRay grid(camera, ray, t, facets, radius_m);
+    const auto in_grid = [&](const auto& lines) {
+      switch (facets.family) {
+        case LineFamily::kColumns: return step_through<LineFamily::kColumns>(grid, lines, end_m - t);
+        case LineFamily::kRows: return step_through<LineFamily::kRows>(grid, lines, end_m - t);
+        case LineFamily::kDiagonals: break;
+      }
+      return step_through<LineFamily::kDiagonals>(grid, lines, end_m - t);
+    };
+    const Steps steps = facets.exact_lines != nullptr ? in_grid(*facets.exact_lines) : in_grid(*facets.lines);
+    const double step_m = grid.step_m();
+    const double at_m = t + static_cast<double>(steps.count) * step_m;
+    if (steps.is_below) {
+      if (steps.count == 0 && t == first_m) return first_m;
+      return crossing(camera, ray, steps.count == 0 ? above_m : at_m - step_m, at_m, finder, radius_m);
+    }
+    above_m = at_m - step_m;
+    t = at_m;
   }
   return kNone;
 }
