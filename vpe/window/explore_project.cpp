@@ -158,19 +158,6 @@ void ExploreWindow::keep_scene() {
   if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
 }
 
-void ExploreWindow::keep_reliefs() {
-  reliefs_.update(now_s());
-  const ReliefsActions actions = reliefs_.take_actions();
-  if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
-  if (!actions.patch) return;
-  const fs::path made = new_file(setup_.folder, "planet-", ".vpe");
-  start_job({JobKind::kMakes,
-             "planet",
-             {"patch", setup_.planet->path(), actions.patch->string(), "-o", made.string()},
-             made,
-             {}});
-}
-
 void ExploreWindow::restore_drawings(const fs::path& copy) {
   try {
     explore::ParsedProject parsed = explore::load_project(copy);

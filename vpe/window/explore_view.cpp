@@ -20,8 +20,6 @@ constexpr double kSoonest_s = 0.02;
 constexpr double kLatest_s = 0.5;
 // Its margin is this part of its sides at most. Wider: slower images; narrower: their border is seen in quick turns.
 constexpr int kMostMargin = 12;
-// Tiles of a surface whose ground has changed.
-constexpr std::size_t kChangedSurfaceBytes = std::size_t{32} << 20;
 
 // Returns true if something lies over images at a fixed place.
 bool has_fixed_overlay(const core::Overlays& o) {
@@ -183,30 +181,6 @@ bool ExploreWindow::take_image() {
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
   if (saves_image_ && drawn_->request.is_full && drawn_->result.settled) save_image();
   return true;
-}
-
-// Lets the session stand on the ground that an image shows.
-void ExploreWindow::follow_ground(const std::shared_ptr<const paging::PlanetFile>& changed) {
-  const std::shared_ptr<const paging::PlanetFile>& shown = changed ? changed : setup_.surface->shared_planet();
-  if (shown == session_.shared_surface()->shared_planet()) return;
-  session_.set_changed_surface(changed ? std::make_shared<const paging::Surface>(changed, kChangedSurfaceBytes)
-                                       : setup_.surface);
-  ground_changed_s_ = now_s();
-}
-
-bool ExploreWindow::measures_other_ground() const { return measured_ != session_.shared_surface(); }
-
-// Measures on the ground of the images once that has been at rest for a while.
-void ExploreWindow::measure_on_ground() {
-  constexpr double kRests_s = 0.4;
-  if (!measures_other_ground()) return;
-  frames_due_ = std::max(frames_due_, 1);
-  if (now_s() - ground_changed_s_ < kRests_s) return;
-  measured_ = session_.shared_surface();
-  measure_.set_surface(measured_, measured_ == setup_.surface ? setup_.open_scene
-                                  : setup_.scenes_on          ? setup_.scenes_on(measured_)
-                                                              : explore::OpenScene());
-  drawing_.set_surface(measured_);
 }
 
 // Runs the rest of an iteration while a panorama is entered. Returns false outside of panoramas.

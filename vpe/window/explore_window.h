@@ -285,10 +285,11 @@ class ExploreWindow {
   explore::MotionMode key_mode() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
-  // explore_view.cpp:
+  // explore_ground.cpp:
   void follow_ground(const std::shared_ptr<const paging::PlanetFile>& changed);
   void measure_on_ground();
   bool measures_other_ground() const;
+  void keep_reliefs();
   void show_message(std::string text, bool is_error = false);
   void clear_message();
   void save_image();
@@ -319,7 +320,6 @@ class ExploreWindow {
   void save_project();
   void keep_drawings();
   void keep_scene();
-  void keep_reliefs();
   void restore_drawings(const std::filesystem::path& copy);
   std::string act_on_project_bookmark(const explore::Action& action);
   double now_s() const;
