@@ -47,6 +47,9 @@ std::size_t bytes_of(const SceneItem& item) {
   return bytes;
 }
 
+// Returns what a list of items takes up beside them.
+std::size_t sizes(const SceneEditor::Items& items) { return items.size() * sizeof(SharedItem); }
+
 auto find_item(const SceneEditor::Items& items, std::uint64_t id) {
   return std::find_if(items.begin(), items.end(), [id](const SharedItem& item) { return item->id == id; });
 }
@@ -77,7 +80,7 @@ constexpr const char* kNotSingle = "only an object with one place can be moved; 
 }  // namespace
 
 void SceneEditor::load(objects::SceneFile scene) {
-  State next;
+  SceneState next;
   next.models = std::make_shared<const Models>(std::exchange(scene.models, {}));
   const auto take = [&](auto entries) {
     for (auto& entry : entries)
@@ -86,21 +89,15 @@ void SceneEditor::load(objects::SceneFile scene) {
   take(std::exchange(scene.objects, {}));
   take(std::exchange(scene.paths, {}));
   take(std::exchange(scene.scatters, {}));
-  next.number = ++last_number_;
-  state_ = std::move(next);
+  load_state(std::move(next));
   rest_ = std::move(scene);
-  saved_ = state_.number;
-  steps_.clear();
   newest_ = 0;
-  going_on_.clear();
-  ++saves_;
-  ++revision_;
 }
 
 objects::SceneFile SceneEditor::scene() const {
   objects::SceneFile scene = rest_;
-  scene.models = *state_.models;
-  for (const SharedItem& item : state_.items) {
+  scene.models = models();
+  for (const SharedItem& item : items()) {
     if (const auto* object = std::get_if<ObjectEntry>(&item->entry)) scene.objects.push_back(*object);
     if (const auto* path = std::get_if<PathEntry>(&item->entry)) scene.paths.push_back(*path);
     if (const auto* scatter = std::get_if<ScatterEntry>(&item->entry)) scene.scatters.push_back(*scatter);
@@ -109,13 +106,13 @@ objects::SceneFile SceneEditor::scene() const {
 }
 
 SharedItem SceneEditor::find(std::uint64_t id) const {
-  const auto found = find_item(state_.items, id);
-  return found == state_.items.end() ? nullptr : *found;
+  const auto found = find_item(items(), id);
+  return found == items().end() ? nullptr : *found;
 }
 
 std::size_t SceneEditor::instances() const {
   std::size_t sum = 0;
-  for (const SharedItem& item : state_.items) {
+  for (const SharedItem& item : items()) {
     const auto* object = std::get_if<ObjectEntry>(&item->entry);
     sum += object != nullptr ? object->places.size() : std::holds_alternative<PathEntry>(item->entry) ? 1 : 0;
   }
@@ -124,7 +121,7 @@ std::size_t SceneEditor::instances() const {
 
 std::string SceneEditor::free_name(const std::string& model) const {
   std::unordered_set<std::string> taken;
-  for (const SharedItem& item : state_.items) taken.insert(item_name(*item));
+  for (const SharedItem& item : items()) taken.insert(item_name(*item));
   std::string name = model;
   if (name.front() >= 'a' && name.front() <= 'z') name.front() = static_cast<char>(name.front() - 'a' + 'A');
   return free_among(taken, name);
@@ -135,7 +132,7 @@ SceneEditor::Problem SceneEditor::add(const ModelEntry& model, const Placing& pl
   placed.place.lon_deg = mars::normalize_lon_deg(placed.place.lon_deg);
   if (Problem problem = problem_of(placed); !problem.empty()) return problem;
   if (instances() >= objects::kMostInstances) return objects::too_many_instances();
-  State next = state_;
+  SceneState next = state();
   const auto known = find_model(models(), model);
   ObjectEntry object;
   object.model = static_cast<std::size_t>(known - models().begin());
@@ -160,7 +157,8 @@ SceneEditor::Problem SceneEditor::add(const ModelEntry& model, const Placing& pl
   const std::string what = "place '" + object.name + "'";
   next.items.insert(end, std::make_shared<const SceneItem>(SceneItem{id, std::move(object)}));
   newest_ = id;
-  return change(std::move(next), 0, what);
+  edit(std::move(next), sizes(items()), what);
+  return "";
 }
 
 SceneEditor::Problem SceneEditor::move(std::uint64_t id, mars::LonLat place, bool continues) {
@@ -201,58 +199,20 @@ SceneEditor::Problem SceneEditor::rename(std::uint64_t id, const std::string& na
 SceneEditor::Problem SceneEditor::remove(std::uint64_t id) {
   const SharedItem old = find(id);
   if (old == nullptr) return kNoItem;
-  State next = state_;
+  SceneState next = state();
   next.items.erase(find_item(next.items, id));
-  return change(std::move(next), bytes_of(*old), "delete " + called(*old));
-}
-
-SceneEditor::Problem SceneEditor::put(SceneItem item, const std::string& what, bool continues) {
-  State next = state_;
-  const auto at = next.items.begin() + (find_item(next.items, item.id) - next.items.cbegin());
-  const std::size_t bytes = bytes_of(**at);
-  const std::string key = what + std::to_string(item.id);
-  const bool joins = continues && going_on_ == key;
-  *at = std::make_shared<const SceneItem>(std::move(item));
-  Problem problem = change(std::move(next), bytes, what, joins);
-  going_on_ = key;
-  return problem;
-}
-
-SceneEditor::Problem SceneEditor::change(State next, std::size_t bytes, std::string what, bool continues) {
-  next.number = ++last_number_;
-  State before = std::exchange(state_, std::move(next));
-  if (!continues) {
-    bytes += before.items.size() * sizeof(SharedItem);
-    steps_.keep(std::move(before), bytes, std::move(what));
-  }
-  going_on_.clear();
-  ++revision_;
+  edit(std::move(next), bytes_of(*old) + sizes(items()), "delete " + called(*old));
   return "";
 }
 
-void SceneEditor::mark_saved() {
-  saved_ = state_.number;
-  going_on_.clear();
-  ++saves_;
-}
-
-void SceneEditor::mark_unsaved() {
-  saved_ = 0;
-  ++saves_;
-}
-
-bool SceneEditor::undo() {
-  going_on_.clear();
-  if (!steps_.undo(state_)) return false;
-  ++revision_;
-  return true;
-}
-
-bool SceneEditor::redo() {
-  going_on_.clear();
-  if (!steps_.redo(state_)) return false;
-  ++revision_;
-  return true;
+SceneEditor::Problem SceneEditor::put(SceneItem item, const std::string& what, bool continues) {
+  SceneState next = state();
+  const auto at = next.items.begin() + (find_item(next.items, item.id) - next.items.cbegin());
+  const std::size_t bytes = bytes_of(**at);
+  const std::string key = what + std::to_string(item.id);
+  *at = std::make_shared<const SceneItem>(std::move(item));
+  edit(std::move(next), bytes + sizes(items()), what, key, continues);
+  return "";
 }
 
 }  // namespace vpe::explore

@@ -12,14 +12,19 @@
 #include <vector>
 
 #include "objects/files/scene_file.h"
-#include "vpe/explore/drawing/undo_history.h"
-#include "vpe/explore/drawing/undo_steps.h"
+#include "vpe/explore/drawing/edited_state.h"
 #include "vpe/explore/objects/scene_item.h"
 
 namespace vpe::explore {
 
 struct SceneEditorLimits {
   static constexpr std::size_t kUndoBytes = std::size_t{64} << 20;  // kept for undo; oldest go first
+};
+
+// Holds what an editor changes of a scene.
+struct SceneState {
+  std::shared_ptr<const std::vector<objects::ModelEntry>> models;
+  std::vector<SharedItem> items;
 };
 
 // Edits one scene, empty at first. For one thread at a time.
@@ -29,14 +34,14 @@ struct SceneEditorLimits {
 //   editor.load(objects::read_scene_file("gale.scene.toml"));
 //   if (std::string problem = editor.move(id, place); !problem.empty()) show(problem);
 //   objects::write_scene_file(editor.scene(), "gale.scene.toml");
-class SceneEditor : public UndoStore {
+class SceneEditor : public EditedState<SceneState> {
  public:
   // Empty, or what is wrong with an edit.
   using Problem = std::string;
   using Models = std::vector<objects::ModelEntry>;
   using Items = std::vector<SharedItem>;
 
-  SceneEditor() { load({}); }
+  SceneEditor() : EditedState(SceneEditorLimits::kUndoBytes) { load({}); }
 
   // Replaces the scene, which counts as saved. Ends all steps of undo. Ids of items are new ones.
   void load(objects::SceneFile scene);
@@ -44,8 +49,8 @@ class SceneEditor : public UndoStore {
   objects::SceneFile scene() const;
 
   // Returns objects, then paths, then scatters, each in the order of the file.
-  const Items& items() const { return state_.items; }
-  const Models& models() const { return *state_.models; }
+  const Items& items() const { return state().items; }
+  const Models& models() const { return *state().models; }
   // Returns null for an id that is not there.
   SharedItem find(std::uint64_t id) const;
   // Returns the id of the item that was added last; 0 if none was.
@@ -65,43 +70,14 @@ class SceneEditor : public UndoStore {
   // Deletes any item. Its model stays.
   [[nodiscard]] Problem remove(std::uint64_t id);
 
-  // Returns a number that changes whenever the scene does.
-  std::uint64_t revision() const { return revision_; }
-  // Returns true if the scene differs from the one that was loaded or last marked as saved.
-  bool is_changed() const { return state_.number != saved_; }
-  void mark_saved();
-  void mark_unsaved();
-  // Returns a number that changes whenever mark_saved(), mark_unsaved() or load() is called.
-  std::uint64_t saves() const { return saves_; }
-
-  UndoState undo_state() const override { return steps_.state(); }
-  std::string undo_text() const override { return steps_.undo_text(); }
-  std::string redo_text() const override { return steps_.redo_text(); }
-  bool undo() override;
-  bool redo() override;
-  void forget_redo() override { steps_.forget_redo(); }
-
  private:
-  struct State {
-    std::shared_ptr<const Models> models;
-    Items items;
-    std::uint64_t number = 0;  // tells states apart
-  };
-  Problem change(State next, std::size_t bytes, std::string what, bool continues = false);
   Problem put(SceneItem item, const std::string& what, bool continues);
   std::string free_name(const std::string& model) const;  // expects a name
   std::size_t instances() const;
 
-  State state_;
   objects::SceneFile rest_;  // without models, objects, paths and scatters
-  UndoSteps<State> steps_{SceneEditorLimits::kUndoBytes};
-  std::uint64_t last_number_ = 0;
-  std::uint64_t saved_ = 0;
-  std::uint64_t saves_ = 0;
-  std::uint64_t revision_ = 0;
   std::uint64_t last_id_ = 0;
   std::uint64_t newest_ = 0;
-  std::string going_on_;  // the edit that the next one may continue
 };
 
 }  // namespace vpe::explore

@@ -25,6 +25,9 @@ std::size_t relief_bytes(const ReliefItem& item) {
   return sizeof item + item.relief.name.size() + item.relief.polygon.size() * sizeof(mars::LonLat);
 }
 
+// Returns what a list of items takes up beside them.
+std::size_t list_bytes(const ReliefEditor::Items& items) { return items.size() * sizeof(SharedRelief); }
+
 std::string quoted_title(const ReliefSpec& relief) { return "'" + relief_title(relief) + "'"; }
 
 // Returns what is wrong with a relief on a sphere, or "".
@@ -58,32 +61,26 @@ ReliefEditor::Problem ReliefEditor::load(std::vector<ReliefSpec> reliefs) {
     if (!problem.empty()) return relief::relief_title(relief, items.size() + 1) + ": " + problem;
     items.push_back(std::make_shared<const ReliefItem>(ReliefItem{++last_id_, std::move(relief)}));
   }
-  state_ = {std::move(items), ++last_number_};
-  saved_ = state_.number;
-  steps_.clear();
+  load_state(std::move(items));
   newest_ = 0;
-  going_on_.clear();
-  ++saves_;
-  ++revision_;
   return "";
 }
 
 std::vector<ReliefSpec> ReliefEditor::reliefs() const {
   std::vector<ReliefSpec> all;
-  all.reserve(state_.items.size());
-  for (const SharedRelief& item : state_.items) all.push_back(item->relief);
+  all.reserve(items().size());
+  for (const SharedRelief& item : items()) all.push_back(item->relief);
   return all;
 }
 
 SharedRelief ReliefEditor::find(std::uint64_t id) const {
-  const auto found = find_relief(state_.items, id);
-  return found == state_.items.end() ? nullptr : *found;
+  const auto found = find_relief(items(), id);
+  return found == items().end() ? nullptr : *found;
 }
 
 std::string ReliefEditor::free_name(const std::string& name) const {
   const auto is_taken = [this](const std::string& text) {
-    return std::ranges::any_of(state_.items,
-                               [&](const SharedRelief& item) { return item->relief.name == text; });
+    return std::ranges::any_of(items(), [&](const SharedRelief& item) { return item->relief.name == text; });
   };
   if (!is_taken(name)) return name;
   for (std::size_t n = 2;; ++n) {
@@ -95,24 +92,25 @@ std::string ReliefEditor::free_name(const std::string& name) const {
 // Returns what is wrong with a relief that takes the place of the one with this id, if there is one.
 ReliefEditor::Problem ReliefEditor::problem_of(const ReliefSpec& relief, std::uint64_t id) const {
   if (Problem problem = relief_problem(relief, radius_m_); !problem.empty()) return problem;
-  const bool is_taken =
-      !relief.name.empty() && std::ranges::any_of(state_.items, [&](const SharedRelief& item) {
-        return item->id != id && item->relief.name == relief.name;
-      });
+  const bool is_taken = !relief.name.empty() && std::ranges::any_of(items(), [&](const SharedRelief& item) {
+    return item->id != id && item->relief.name == relief.name;
+  });
   return is_taken ? kNameIsTaken : "";
 }
 
 ReliefEditor::Problem ReliefEditor::add(ReliefSpec relief) {
-  if (state_.items.size() >= relief::kMostReliefs)
+  if (items().size() >= relief::kMostReliefs)
     return "expected at most " + std::to_string(relief::kMostReliefs) + " reliefs";
   if (relief.name.empty()) relief.name = free_name(relief_title(relief));
   relief.place.lon_deg = mars::normalize_lon_deg(relief.place.lon_deg);
   if (Problem problem = problem_of(relief, 0); !problem.empty()) return problem;
   const std::string what = "add " + quoted_title(relief);
-  Items next = state_.items;
+  Items next = items();
   next.push_back(std::make_shared<const ReliefItem>(ReliefItem{++last_id_, std::move(relief)}));
   newest_ = last_id_;
-  return change(std::move(next), 0, what);
+  const std::size_t bytes = list_bytes(next);
+  edit(std::move(next), bytes, what);
+  return "";
 }
 
 ReliefEditor::Problem ReliefEditor::move(std::uint64_t id, mars::LonLat place, bool continues) {
@@ -134,67 +132,32 @@ ReliefEditor::Problem ReliefEditor::replace(std::uint64_t id, ReliefSpec relief,
   relief.place.lon_deg = mars::normalize_lon_deg(relief.place.lon_deg);
   if (relief == old->relief) return "";
   if (Problem problem = problem_of(relief, id); !problem.empty()) return problem;
-  const std::string key = what + " " + std::to_string(id);
-  const bool joins = continues && going_on_ == key;
-  Items next = state_.items;
+  Items next = items();
   next[static_cast<std::size_t>(find_relief(next, id) - next.cbegin())] =
       std::make_shared<const ReliefItem>(ReliefItem{id, std::move(relief)});
-  Problem problem = change(std::move(next), relief_bytes(*old), what + " " + quoted_title(old->relief), joins);
-  going_on_ = key;
-  return problem;
+  edit(std::move(next), relief_bytes(*old) + list_bytes(items()), what + " " + quoted_title(old->relief),
+       what + " " + std::to_string(id), continues);
+  return "";
 }
 
 ReliefEditor::Problem ReliefEditor::shift(std::uint64_t id, bool later) {
-  Items next = state_.items;
+  Items next = items();
   const auto at = static_cast<std::size_t>(find_relief(next, id) - next.cbegin());
   if (at == next.size()) return kNoRelief;
   if (later ? at + 1 == next.size() : at == 0) return "";
   std::swap(next[at], next[later ? at + 1 : at - 1]);
-  return change(std::move(next), 0, (later ? "make later " : "make earlier ") + quoted_title(find(id)->relief));
+  edit(std::move(next), list_bytes(items()),
+       (later ? "make later " : "make earlier ") + quoted_title(find(id)->relief));
+  return "";
 }
 
 ReliefEditor::Problem ReliefEditor::remove(std::uint64_t id) {
   const SharedRelief old = find(id);
   if (old == nullptr) return kNoRelief;
-  Items next = state_.items;
+  Items next = items();
   next.erase(find_relief(next, id));
-  return change(std::move(next), relief_bytes(*old), "delete " + quoted_title(old->relief));
-}
-
-ReliefEditor::Problem ReliefEditor::change(Items items, std::size_t bytes, std::string what, bool continues) {
-  State before = std::exchange(state_, {std::move(items), ++last_number_});
-  if (!continues) {
-    bytes += before.items.size() * sizeof(SharedRelief);
-    steps_.keep(std::move(before), bytes, std::move(what));
-  }
-  going_on_.clear();
-  ++revision_;
+  edit(std::move(next), relief_bytes(*old) + list_bytes(items()), "delete " + quoted_title(old->relief));
   return "";
-}
-
-void ReliefEditor::mark_saved() {
-  saved_ = state_.number;
-  going_on_.clear();
-  ++saves_;
-}
-
-void ReliefEditor::mark_unsaved() {
-  saved_ = 0;
-  ++saves_;
-}
-
-bool ReliefEditor::undo() {
-  going_on_.clear();
-  if (!steps_.undo(state_)) return false;
-  ++revision_;
-  return true;
-}
-
-bool ReliefEditor::redo() {
-  going_on_.clear();
-  if (!steps_.redo(state_)) return false;
-  ++revision_;
-  return true;
 }
 
 }  // namespace vpe::explore

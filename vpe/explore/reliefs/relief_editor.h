@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "relief/spec.h"
-#include "vpe/explore/drawing/undo_history.h"
-#include "vpe/explore/drawing/undo_steps.h"
+#include "vpe/explore/drawing/edited_state.h"
 
 namespace vpe::explore {
 
@@ -36,13 +35,13 @@ std::string relief_title(const relief::ReliefSpec& relief);
 //   editor.load(relief::read_relief_file("works.relief.toml"));
 //   if (std::string problem = editor.move(id, place); !problem.empty()) show(problem);
 //   relief::write_relief_file(editor.reliefs(), "works.relief.toml");
-class ReliefEditor : public UndoStore {
+class ReliefEditor : public EditedState<std::vector<SharedRelief>> {
  public:
   // Empty, or what is wrong with an edit.
   using Problem = std::string;
   using Items = std::vector<SharedRelief>;
 
-  explicit ReliefEditor(double radius_m) : radius_m_(radius_m) { (void)load({}); }
+  explicit ReliefEditor(double radius_m) : EditedState(ReliefEditorLimits::kUndoBytes), radius_m_(radius_m) {}
 
   // Replaces all reliefs, which count as saved. Ends all steps of undo. Ids of items are new ones. Returns what is wrong with
   // them on this planet, and changes nothing then.
@@ -50,7 +49,7 @@ class ReliefEditor : public UndoStore {
   // Returns the reliefs in the order in which they change the ground.
   std::vector<relief::ReliefSpec> reliefs() const;
 
-  const Items& items() const { return state_.items; }
+  const Items& items() const { return state(); }
   // Returns null for an id that is not there.
   SharedRelief find(std::uint64_t id) const;
   // Returns the id of the item that was added last; 0 if none was.
@@ -68,41 +67,13 @@ class ReliefEditor : public UndoStore {
   [[nodiscard]] Problem shift(std::uint64_t id, bool later);
   [[nodiscard]] Problem remove(std::uint64_t id);
 
-  // Returns a number that changes whenever the reliefs do.
-  std::uint64_t revision() const { return revision_; }
-  // Returns true if the reliefs differ from those that were loaded or last marked as saved.
-  bool is_changed() const { return state_.number != saved_; }
-  void mark_saved();
-  void mark_unsaved();
-  // Returns a number that changes whenever mark_saved(), mark_unsaved() or load() is called.
-  std::uint64_t saves() const { return saves_; }
-
-  UndoState undo_state() const override { return steps_.state(); }
-  std::string undo_text() const override { return steps_.undo_text(); }
-  std::string redo_text() const override { return steps_.redo_text(); }
-  bool undo() override;
-  bool redo() override;
-  void forget_redo() override { steps_.forget_redo(); }
-
  private:
-  struct State {
-    Items items;
-    std::uint64_t number = 0;  // tells states apart
-  };
   Problem problem_of(const relief::ReliefSpec& relief, std::uint64_t id) const;
-  Problem change(Items items, std::size_t bytes, std::string what, bool continues = false);
   std::string free_name(const std::string& name) const;
 
   double radius_m_;
-  State state_;
-  UndoSteps<State> steps_{ReliefEditorLimits::kUndoBytes};
-  std::uint64_t last_number_ = 0;
-  std::uint64_t saved_ = 0;
-  std::uint64_t saves_ = 0;
-  std::uint64_t revision_ = 0;
   std::uint64_t last_id_ = 0;
   std::uint64_t newest_ = 0;
-  std::string going_on_;  // the edit that the next one may continue
 };
 
 }  // namespace vpe::explore

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vpe/explore/measure/map_line.h"
+#include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
 
@@ -86,9 +87,8 @@ class DrawingMarker : public GroundView {
       list_.AddCircleFilled(middle, size, colour_of(colour, 255));
     if (name.empty()) return;
     const ImVec2 corner{middle.x + size + 3, middle.y - ImGui::GetFontSize() - 1};
-    for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
-      list_.AddText({corner.x + dx, corner.y + dy}, IM_COL32(0, 0, 0, hidden ? 60 : 200), name.c_str());
-    list_.AddText(corner, colour_of(colour, hidden ? 170 : 255), name.c_str());
+    draw_bordered(list_, corner, name, colour_of(colour, hidden ? 170 : 255),
+                  IM_COL32(0, 0, 0, hidden ? 60 : 200));
   }
 
   // Shares the casts of a frame among this many lines.

@@ -12,11 +12,6 @@ namespace {
 constexpr ImU32 kObjectMark = IM_COL32(140, 220, 255, 255);
 constexpr ImU32 kObjectChosen = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kObjectDark = IM_COL32(0, 0, 0, 190);
-constexpr unsigned kFaintAlpha = 130;
-
-ImU32 faint(ImU32 colour) {
-  return (colour & ~IM_COL32_A_MASK) | (kFaintAlpha << static_cast<unsigned>(IM_COL32_A_SHIFT));
-}
 
 }  // namespace
 
@@ -48,9 +43,7 @@ bool draw_object_mark(ImDrawList& list, const GroundView& ground, const EyeImage
   const float above = static_cast<float>(std::max(radius_px, 0.4 * static_cast<double>(size)));
   const ImVec2 extent = ImGui::CalcTextSize(name.c_str());
   const ImVec2 text{at_middle.x - extent.x / 2, at_middle.y - above - extent.y - 2};
-  for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
-    list.AddText({text.x + dx, text.y + dy}, shown(kObjectDark), name.c_str());
-  list.AddText(text, colour, name.c_str());
+  draw_bordered(list, text, name, colour, shown(kObjectDark));
   return true;
 }
 

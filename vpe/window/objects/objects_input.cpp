@@ -10,6 +10,7 @@
 
 #include "vpe/window/marks/pose_drag.h"
 #include "vpe/window/objects/objects_panel.h"
+#include "vpe/window/ui/letter_key.h"
 
 namespace vpe::window {
 
@@ -39,12 +40,6 @@ bool is_plain_press(const Event& event) {
 bool is_same_pose(const mars::Pose& a, const mars::Pose& b) {
   return a.lon_deg == b.lon_deg && a.lat_deg == b.lat_deg && a.alt_m == b.alt_m && a.yaw_deg == b.yaw_deg &&
          a.pitch_deg == b.pitch_deg && a.roll_deg == b.roll_deg;
-}
-
-// Returns true if a key bears the letter S on the user's keyboard.
-bool is_letter_s(int code) {
-  const char* name = glfwGetKeyName(code, 0);
-  return name != nullptr ? name[0] == 's' && name[1] == '\0' : code == GLFW_KEY_S;
 }
 
 }  // namespace
@@ -196,7 +191,7 @@ bool ObjectsPanel::handle_key(const Event& event, explore::Session& session) {
   const bool ctrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
   if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SHIFT)) != 0) return false;
   if (ctrl) {
-    if (!is_shown() || !editor_.is_changed() || !is_letter_s(event.code)) return false;
+    if (!is_shown() || !editor_.is_changed() || !is_letter_key(event.code, 's')) return false;
     if (is_first) save(session);
     return true;
   }

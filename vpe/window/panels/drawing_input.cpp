@@ -9,6 +9,7 @@
 
 #include "vpe/window/marks/ground_view.h"
 #include "vpe/window/panels/drawing_panel.h"
+#include "vpe/window/ui/letter_key.h"
 
 namespace vpe::window {
 
@@ -17,12 +18,6 @@ namespace {
 constexpr double kClick_px = 5;  // a press that moves farther is a drag
 constexpr double kSecondClick_s = 0.35;
 constexpr double kSecondClick_px = 6;
-
-// Returns true if a key bears this letter on the user's keyboard.
-bool is_letter(int code, char letter) {
-  const char* name = glfwGetKeyName(code, 0);
-  return name != nullptr ? name[0] == letter && name[1] == '\0' : code == letter - 'a' + GLFW_KEY_A;
-}
 
 double reach_px() { return static_cast<double>(ImGui::GetFontSize()) * 0.6; }
 
@@ -106,11 +101,11 @@ bool DrawingPanel::handle_key(const Event& event, const explore::Session& sessio
   const bool shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
   if ((event.modifiers & GLFW_MOD_ALT) != 0) return false;
   if (ctrl) {
-    if (is_letter(event.code, 'z')) {
+    if (is_letter_key(event.code, 'z')) {
       undo(shift);
-    } else if (is_letter(event.code, 'y') && !shift) {
+    } else if (is_letter_key(event.code, 'y') && !shift) {
       undo(true);
-    } else if (is_letter(event.code, 's') && !shift) {
+    } else if (is_letter_key(event.code, 's') && !shift) {
       if (event.kind == Event::Kind::kKeyPress) actions_.saves_project = true;
     } else {
       return false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vpe/window/panels/profile_plot_view.h"
+#include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
 
@@ -115,9 +116,8 @@ void Marker::point(mars::LonLat place, const std::string& name) const {
   else
     list_.AddCircleFilled(middle, size, kMeasureMark);
   const ImVec2 corner{middle.x + size + 3, middle.y - ImGui::GetFontSize() - 1};
-  for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
-    list_.AddText({corner.x + dx, corner.y + dy}, hidden ? kFaintDark : kMarkDark, name.c_str());
-  list_.AddText(corner, hidden ? IM_COL32(255, 214, 90, 170) : kMeasureMark, name.c_str());
+  draw_bordered(list_, corner, name, hidden ? IM_COL32(255, 214, 90, 170) : kMeasureMark,
+                hidden ? kFaintDark : kMarkDark);
 }
 
 void Marker::cross(mars::LonLat place) const {

@@ -14,11 +14,6 @@ namespace {
 constexpr ImU32 kReliefMark = IM_COL32(255, 170, 110, 255);
 constexpr ImU32 kReliefChosen = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kReliefDark = IM_COL32(0, 0, 0, 190);
-constexpr unsigned kReliefFaintAlpha = 130;
-
-ImU32 relief_faint(ImU32 colour) {
-  return (colour & ~IM_COL32_A_MASK) | (kReliefFaintAlpha << static_cast<unsigned>(IM_COL32_A_SHIFT));
-}
 
 // Draws the parts of the outline that are in front of the camera.
 void draw_outline(ImDrawList& list, const GroundView& ground, const EyeImage& eye,
@@ -46,7 +41,7 @@ void draw_relief_mark(ImDrawList& list, const GroundView& ground, const EyeImage
   const core::Projected middle = ground.seen(middle_m);
   if (!ground.is_in_view(middle)) return;
   const bool is_hidden = ground.is_hidden(middle_m);
-  const auto shown = [is_hidden](ImU32 colour) { return is_hidden ? relief_faint(colour) : colour; };
+  const auto shown = [is_hidden](ImU32 colour) { return is_hidden ? faint(colour) : colour; };
   const float arm = ImGui::GetFontSize() * 0.4F;
   const ImVec2 p = at(eye.x0 + middle.xy.x, eye.y0 + middle.xy.y);
   const ImU32 colour = is_chosen ? kReliefChosen : kReliefMark;
@@ -58,9 +53,7 @@ void draw_relief_mark(ImDrawList& list, const GroundView& ground, const EyeImage
   const std::string name = explore::relief_title(relief);
   const ImVec2 extent = ImGui::CalcTextSize(name.c_str());
   const ImVec2 text{p.x - extent.x / 2, p.y - arm - extent.y - 2};
-  for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
-    list.AddText({text.x + dx, text.y + dy}, shown(kReliefDark), name.c_str());
-  list.AddText(text, shown(colour), name.c_str());
+  draw_bordered(list, text, name, shown(colour), shown(kReliefDark));
 }
 
 }  // namespace vpe::window

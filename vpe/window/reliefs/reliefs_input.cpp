@@ -11,6 +11,7 @@
 #include "vpe/explore/reliefs/usual_relief.h"
 #include "vpe/explore/terrain_query.h"
 #include "vpe/window/reliefs/reliefs_panel.h"
+#include "vpe/window/ui/letter_key.h"
 
 namespace vpe::window {
 
@@ -24,12 +25,6 @@ constexpr double kReliefClick_px = 5;  // a press that moves farther is a drag
 mars::LonLat rounded_place(mars::LonLat place) {
   constexpr double kParts = 1e9;  // of a degree
   return {std::round(place.lon_deg * kParts) / kParts, std::round(place.lat_deg * kParts) / kParts};
-}
-
-// Returns true if a key bears the letter S on the user's keyboard.
-bool is_save_key(int code) {
-  const char* name = glfwGetKeyName(code, 0);
-  return name != nullptr ? name[0] == 's' && name[1] == '\0' : code == GLFW_KEY_S;
 }
 
 }  // namespace
@@ -126,7 +121,7 @@ bool ReliefsPanel::handle_key(const Event& event, const explore::Session& sessio
   const bool is_first = event.kind == Event::Kind::kKeyPress;
   if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SHIFT)) != 0) return false;
   if ((event.modifiers & GLFW_MOD_CONTROL) != 0) {
-    if (!is_shown() || !editor_.is_changed() || !is_save_key(event.code)) return false;
+    if (!is_shown() || !editor_.is_changed() || !is_letter_key(event.code, 's')) return false;
     if (is_first) save();
     return true;
   }

@@ -1,6 +1,7 @@
 #include "vpe/window/ui/imgui_helpers.h"
 
 #include <cmath>
+#include <utility>
 
 namespace vpe::window {
 
@@ -14,6 +15,13 @@ void coloured_line(const ImVec4& colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopStyleColor();
+}
+
+void draw_bordered(ImDrawList& list, const ImVec2& corner, const std::string& text, ImU32 colour,
+                   ImU32 border) {
+  for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
+    list.AddText({corner.x + dx, corner.y + dy}, border, text.c_str());
+  list.AddText(corner, colour, text.c_str());
 }
 
 void draw_message(ImDrawList& list, const ViewArea& area, const std::string& text) {

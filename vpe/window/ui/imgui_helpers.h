@@ -37,6 +37,15 @@ inline const ImVec4 kSuccessColour{0.7F, 0.9F, 0.7F, 1};
 void coloured(const ImVec4& colour, const std::string& text);
 void coloured_line(const ImVec4& colour, const std::string& text);
 
+// Returns a colour for what the ground hides.
+inline ImU32 faint(ImU32 colour) {
+  constexpr unsigned kFaintAlpha = 130;
+  return (colour & ~IM_COL32_A_MASK) | (kFaintAlpha << static_cast<unsigned>(IM_COL32_A_SHIFT));
+}
+
+// Draws a text whose letters have a border of another colour. `corner` is its upper left one.
+void draw_bordered(ImDrawList& list, const ImVec2& corner, const std::string& text, ImU32 colour, ImU32 border);
+
 // Draws a message in the middle of a view that has no image, wrapped at 80 % of its width.
 void draw_message(ImDrawList& list, const ViewArea& area, const std::string& text);
 
