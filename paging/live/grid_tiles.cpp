@@ -104,6 +104,12 @@ void put_inner(const lod::TileKey& key, const GridTile& tile, const PackedMesh& 
   store.put_tile(to_row(key, tile.node), payload);
 }
 
+// Returns true for a border of 2 n intervals that has every second post.
+bool is_every_second(const std::vector<int>& border, int n) {
+  return border.size() == static_cast<std::size_t>(n) + 1 &&
+         std::ranges::all_of(border, [](int along) { return along % 2 == 0; });
+}
+
 // Returns the border vertices of a neighbour's mesh, in positions along the own edge of a grid of `intervals`.
 std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& next, int intervals) {
   const int last = mesh.mesh.intervals;
@@ -124,7 +130,7 @@ std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& n
 
 // Measures a tile's mesh and its own posts.
 struct DividedMeters {
-  lod::ErrorMeter mesh;
+  std::unique_ptr<const lod::ErrorMeter> mesh;  // null: the mesh is the grid of the posts
   lod::GridMeter posts;
 };
 
@@ -203,6 +209,8 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
       for (int a = 0; a <= 2 * n; a += 2) border.push_back(a);
     }
   }
+  tile.is_own_grid =
+      std::ranges::all_of(borders, [&](const std::vector<int>& border) { return is_every_second(border, n); });
   PackedMesh mesh;
   mesh.mesh = stitched_grid(2 * n, borders);
   mesh.height_q.resize(mesh.mesh.vertices.size());
@@ -213,25 +221,35 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
 }
 
 std::map<lod::TileKey, InnerTerms> measure_divided_tiles(const StoredTiles& stored, const lod::TileTree& planet,
+                                                         const std::map<lod::TileKey, GridTile>& tiles,
                                                          std::span<const lod::TileKey> leaves) {
   const double radius_m = stored.meta.radius_m;
+  const auto posts_of = [&](const lod::TileKey& key) {
+    return posts_of_quanta(stored, key, tiles.at(key).quanta);
+  };
+  const auto meters_of = [&](const lod::TileKey& key) {
+    std::unique_ptr<const lod::ErrorMeter> of_mesh;
+    if (!tiles.at(key).is_own_grid) {
+      const PackedMesh mesh = decode_mesh(stored.store.mesh(key, 0), mesh_intervals(stored.meta.tile, true));
+      of_mesh = std::make_unique<const lod::ErrorMeter>(key, mesh.mesh,
+                                                        vertex_heights(mesh, stored.meta.quantum_m), radius_m);
+    }
+    return std::make_unique<DividedMeters>(
+        DividedMeters{std::move(of_mesh), lod::GridMeter(posts_of(key), radius_m)});
+  };
   std::map<lod::TileKey, InnerTerms> found;
   std::map<lod::TileKey, std::unique_ptr<DividedMeters>> meters;
   for (const lod::TileKey& leaf : leaves) {
     const int first = planet.deepest(leaf).key.level;
     if (first >= leaf.level) continue;
     std::erase_if(meters, [&](const auto& meter) { return !lod::contains(meter.first, leaf); });
-    const lod::FinePosts posts(read_posts(stored, leaf), radius_m);
+    const lod::FinePosts posts(posts_of(leaf), radius_m);
     for (int level = first; level < leaf.level; ++level) {
       const lod::TileKey key = lod::ancestor(leaf, level);
       auto& meter = meters[key];
-      if (!meter) {
-        const PackedMesh mesh = decode_mesh(stored.store.mesh(key, 0), mesh_intervals(stored.meta.tile, true));
-        meter = std::make_unique<DividedMeters>(DividedMeters{
-            lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, stored.meta.quantum_m), radius_m),
-            lod::GridMeter(read_posts(stored, key), radius_m)});
-      }
-      found[key].include({meter->mesh.measure(posts), meter->posts.measure(posts)});
+      if (!meter) meter = meters_of(key);
+      const lod::ErrorTerms of_posts = meter->posts.measure(posts);
+      found[key].include({meter->mesh ? meter->mesh->measure(posts) : of_posts, of_posts});
     }
   }
   return found;
