@@ -193,7 +193,7 @@ ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const Sh
   }
   out.nodata = std::ranges::count(nodata, true) > 0;
   if (is_kept) {
-    auto keep = std::make_shared<const KeptTexture>(out, std::move(sources), std::move(nodata));
+    auto keep = std::make_shared<const KeptTexture>(KeptTexture{out, std::move(sources), std::move(nodata)});
     const std::size_t bytes = keep->bytes();
     textures_.erase(texture);  // of the planet before
     textures_.insert(texture, std::move(keep), bytes);
