@@ -79,7 +79,11 @@ std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m) {
 }
 
 lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key) {
-  const auto quanta = decode_heights(stored.store.heights(key), stored.meta.tile.posts());
+  return posts_of_quanta(stored, key, decode_heights(stored.store.heights(key), stored.meta.tile.posts()));
+}
+
+lod::Posts posts_of_quanta(const StoredTiles& stored, const lod::TileKey& key,
+                           std::span<const std::int32_t> quanta) {
   lod::Posts posts{key, stored.meta.tile.intervals(), std::vector<double>(quanta.size())};
   std::transform(quanta.begin(), quanta.end(), posts.height_m.begin(),
                  [q = stored.meta.quantum_m](std::int32_t n) { return n * q; });

@@ -117,6 +117,9 @@ Node node_of(const NodeRow& row);
 
 // Reads a stored tile's posts with constrained borders: the finest ones of a leaf, its own of an inner tile.
 lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key);
+// Returns the same from the tile's heights in quanta, as they are stored.
+lod::Posts posts_of_quanta(const StoredTiles& stored, const lod::TileKey& key,
+                           std::span<const std::int32_t> quanta);
 // Returns the heights of a stored mesh's vertices in metres.
 std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m);
 

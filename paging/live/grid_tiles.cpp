@@ -27,6 +27,11 @@ double growth(const PlanetMeta& meta, const lod::TileKey& key, double min_m, dou
   return far / near * radii * radii;
 }
 
+// Returns the factor by which terms are raised over cells of a level.
+double raise_over_cell(int level, const PlanetMeta& meta, double steepest_slope) {
+  return 1 + kCellRaise * lod::post_spacing_m(level, meta.tile.intervals(), 1.0) * (1 + steepest_slope);
+}
+
 // Bounds the errors of a tile whose posts moved by up to shift_m, with the terms that it had and those of the surface.
 lod::ErrorTerms bound(const lod::ErrorTerms& had, const lod::ErrorTerms& change, double shift_m, double raise) {
   return {raise * (had.height_error_m + change.height_error_m + shift_m),
@@ -104,6 +109,12 @@ void put_inner(const lod::TileKey& key, const GridTile& tile, const PackedMesh& 
   store.put_tile(to_row(key, tile.node), payload);
 }
 
+// Returns true for a border of 2 n intervals that has every second post.
+bool is_every_second(const std::vector<int>& border, int n) {
+  return border.size() == static_cast<std::size_t>(n) + 1 &&
+         std::ranges::all_of(border, [](int along) { return along % 2 == 0; });
+}
+
 // Returns the border vertices of a neighbour's mesh, in positions along the own edge of a grid of `intervals`.
 std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& next, int intervals) {
   const int last = mesh.mesh.intervals;
@@ -122,11 +133,40 @@ std::vector<int> vertices_across(const PackedMesh& mesh, const lod::Neighbour& n
   return along;
 }
 
-// Measures a tile's mesh and its own posts.
+// Measures a tile's own posts, and its mesh where that is not their grid: beside its borders.
 struct DividedMeters {
-  lod::ErrorMeter mesh;
+  std::unique_ptr<const lod::ErrorMeter> strips;  // null: the mesh is the grid
   lod::GridMeter posts;
+  double raise = 1;  // bounds how much more a meter of the whole mesh may raise what it finds
 };
+
+// Returns the triangles of a mesh that have a vertex on the border.
+PackedMesh border_strips(const PackedMesh& mesh) {
+  PackedMesh out = mesh;
+  out.mesh.triangles.clear();
+  const int last = mesh.mesh.intervals;
+  for (std::size_t t = 0; t + 2 < mesh.mesh.triangles.size(); t += 3) {
+    const auto begin = mesh.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t);
+    const bool at_border = std::any_of(begin, begin + 3, [&](std::uint16_t corner) {
+      const lod::MeshVertex& v = mesh.mesh.vertices[corner];
+      return v.i == 0 || v.j == 0 || v.i == last || v.j == last;
+    });
+    if (at_border) out.mesh.triangles.insert(out.mesh.triangles.end(), begin, begin + 3);
+  }
+  return out;
+}
+
+// Bounds what a meter of the whole mesh finds over posts. Vertices of the overlay that the strips do not have, those on the
+// line where they end, are posts of the grid.
+lod::ErrorTerms measure_mesh(const DividedMeters& meters, const lod::FinePosts& posts,
+                             const lod::ErrorTerms& of_posts) {
+  if (!meters.strips) return of_posts;
+  lod::ErrorTerms terms = meters.strips->measure(posts);
+  terms.include(of_posts);
+  const double height_error_m =
+      meters.raise * terms.height_error_m + (meters.raise - 1) * (terms.total_m + terms.sagitta_m);
+  return {height_error_m, meters.raise * terms.sagitta_m, meters.raise * terms.total_m};
+}
 
 }  // namespace
 
@@ -167,9 +207,7 @@ GridTile make_grid_inner(const PlanetMeta& meta, const BaseTiles& base, const Gr
   tile.nodata = was->nodata;
   PackedMesh mesh = was->mesh;
   const double steepest = std::max(had.steepest_slope, tile.node.slope);
-  const auto raise = [&](int level) {
-    return 1 + kCellRaise * lod::post_spacing_m(level, n, 1.0) * (1 + steepest);
-  };
+  const auto raise = [&](int level) { return raise_over_cell(level, meta, steepest); };
   const double grows = growth(meta, key, std::min(had.min_height_m, tile.node.min_m),
                               std::max(had.max_height_m, tile.node.max_m)) *
                        meta.quantum_m * raise(key.level + 1);
@@ -203,6 +241,8 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
       for (int a = 0; a <= 2 * n; a += 2) border.push_back(a);
     }
   }
+  tile.is_own_grid =
+      std::ranges::all_of(borders, [&](const std::vector<int>& border) { return is_every_second(border, n); });
   PackedMesh mesh;
   mesh.mesh = stitched_grid(2 * n, borders);
   mesh.height_q.resize(mesh.mesh.vertices.size());
@@ -213,25 +253,37 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
 }
 
 std::map<lod::TileKey, InnerTerms> measure_divided_tiles(const StoredTiles& stored, const lod::TileTree& planet,
+                                                         const std::map<lod::TileKey, GridTile>& tiles,
                                                          std::span<const lod::TileKey> leaves) {
   const double radius_m = stored.meta.radius_m;
+  const auto posts_of = [&](const lod::TileKey& key) {
+    return posts_of_quanta(stored, key, tiles.at(key).quanta);
+  };
+  const auto meters_of = [&](const lod::TileKey& key) {
+    std::unique_ptr<const lod::ErrorMeter> strips;
+    if (!tiles.at(key).is_own_grid) {
+      const PackedMesh mesh =
+          border_strips(decode_mesh(stored.store.mesh(key, 0), mesh_intervals(stored.meta.tile, true)));
+      strips = std::make_unique<const lod::ErrorMeter>(key, mesh.mesh,
+                                                       vertex_heights(mesh, stored.meta.quantum_m), radius_m);
+    }
+    const double raise = raise_over_cell(key.level, stored.meta, stored.nodes.at(key).slope);
+    return std::make_unique<DividedMeters>(
+        DividedMeters{std::move(strips), lod::GridMeter(posts_of(key), radius_m), raise});
+  };
   std::map<lod::TileKey, InnerTerms> found;
   std::map<lod::TileKey, std::unique_ptr<DividedMeters>> meters;
   for (const lod::TileKey& leaf : leaves) {
     const int first = planet.deepest(leaf).key.level;
     if (first >= leaf.level) continue;
     std::erase_if(meters, [&](const auto& meter) { return !lod::contains(meter.first, leaf); });
-    const lod::FinePosts posts(read_posts(stored, leaf), radius_m);
+    const lod::FinePosts posts(posts_of(leaf), radius_m);
     for (int level = first; level < leaf.level; ++level) {
       const lod::TileKey key = lod::ancestor(leaf, level);
       auto& meter = meters[key];
-      if (!meter) {
-        const PackedMesh mesh = decode_mesh(stored.store.mesh(key, 0), mesh_intervals(stored.meta.tile, true));
-        meter = std::make_unique<DividedMeters>(DividedMeters{
-            lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, stored.meta.quantum_m), radius_m),
-            lod::GridMeter(read_posts(stored, key), radius_m)});
-      }
-      found[key].include({meter->mesh.measure(posts), meter->posts.measure(posts)});
+      if (!meter) meter = meters_of(key);
+      const lod::ErrorTerms of_posts = meter->posts.measure(posts);
+      found[key].include({measure_mesh(*meter, posts, of_posts), of_posts});
     }
   }
   return found;

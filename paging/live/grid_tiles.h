@@ -29,6 +29,7 @@ struct GridTile {
   std::vector<bool> nodata;          // empty: none
   lod::ErrorTerms change;            // of the surface over it
   int coarsest_level = 0;            // of the finest tiles below that the patch makes
+  bool is_own_grid = false;          // its mesh is the full grid of its own posts
 };
 
 // Stores a finest tile with its full grid alone. `ground` is that of the planet at its posts.
@@ -53,7 +54,9 @@ GridTile make_divided_tile(const PlanetMeta& meta, const BaseTiles& base, const 
                            const lod::TileKey& key, const IsMade& is_made, TileStore& store);
 
 // Computes the errors of all tiles that have no children in the planet over finest tiles below them, given in Morton order.
+// `tiles` are those that the patch makes.
 std::map<lod::TileKey, InnerTerms> measure_divided_tiles(const StoredTiles& stored, const lod::TileTree& planet,
+                                                         const std::map<lod::TileKey, GridTile>& tiles,
                                                          std::span<const lod::TileKey> leaves);
 
 }  // namespace paging

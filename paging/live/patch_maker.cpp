@@ -137,7 +137,7 @@ class PatchJob {
            }));
     });
     measure_in_chunks(plan_.leaves, [&](std::span<const lod::TileKey> leaves) {
-      return measure_divided_tiles(stored_, planet_.tree(), leaves);
+      return measure_divided_tiles(stored_, planet_.tree(), tiles, leaves);
     });
   }
 

@@ -53,7 +53,16 @@ std::shared_ptr<const PlanetFile> ReliefPatcher::with(std::span<const relief::Re
                     [this](const glm::dvec3& direction) { return maker_.ground_m(direction); });
   MadePatch patch = maker_.make(*relief_change(std::move(placed)), options);
   if (made != nullptr) *made = patch;
-  return patch.patch ? base()->with(std::move(patch.patch)) : base();
+  if (!patch.patch) return base();
+  std::shared_ptr<const PlanetFile> former;
+  {
+    const std::lock_guard lock(last_->mutex);
+    former = last_->planet.lock();
+  }
+  std::shared_ptr<const PlanetFile> patched = base()->with(std::move(patch.patch), former);
+  const std::lock_guard lock(last_->mutex);
+  last_->planet = patched;
+  return patched;
 }
 
 std::shared_ptr<const PlanetFile> with_reliefs(std::shared_ptr<const PlanetFile> base,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,12 +30,18 @@ class ReliefPatcher {
 
   // Returns the planet with the reliefs, in their order; the planet itself if nothing changes. Zeros that count from the
   // ground count from the planet's own surface, as relief::place() says. Throws std::runtime_error with the name of a
-  // relief that has a problem, and what PatchMaker::make() throws. `made`, if given, is told what was made.
+  // relief that has a problem, and what PatchMaker::make() throws. `made`, if given, is told what was made. Follows the
+  // planet that was made last, if that is in use: tiles with the same content keep their numbers (PlanetFile::with()).
   std::shared_ptr<const PlanetFile> with(std::span<const relief::ReliefSpec> reliefs,
                                          const PatchOptions& options = {}, MadePatch* made = nullptr) const;
 
  private:
+  struct Last {
+    std::mutex mutex;
+    std::weak_ptr<const PlanetFile> planet;
+  };
   PatchMaker maker_;
+  std::unique_ptr<Last> last_ = std::make_unique<Last>();
 };
 
 // Does the same once.

@@ -83,21 +83,32 @@ void add_strip(int intervals, lod::Edge edge, const std::vector<int>& border, Gr
   }
 }
 
+// Returns true for a border of every second post.
+bool is_plain(const std::vector<int>& border, int intervals) {
+  if (border.size() != static_cast<std::size_t>(intervals / kStep) + 1) return false;
+  return std::ranges::all_of(border, [](int along) { return along % kStep == 0; });
+}
+
 }  // namespace
 
 lod::TileMesh stitched_grid(int intervals, const lod::BorderPosts& borders) {
   GridTriangles out(intervals);
+  const bool is_grid =
+      std::ranges::all_of(borders, [&](const auto& border) { return is_plain(border, intervals); });
+  const int first = is_grid ? 0 : kStep;
   const auto at = [](int i, int j) {
     return lod::MeshVertex{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)};
   };
-  for (int j = kStep; j < intervals - kStep; j += kStep) {
-    for (int i = kStep; i < intervals - kStep; i += kStep) {
+  for (int j = first; j < intervals - first; j += kStep) {
+    for (int i = first; i < intervals - first; i += kStep) {
       out.add({at(i, j), at(i + kStep, j), at(i + kStep, j + kStep)});
       out.add({at(i, j), at(i + kStep, j + kStep), at(i, j + kStep)});
     }
   }
-  for (const lod::Edge edge : lod::kEdges)
+  for (const lod::Edge edge : lod::kEdges) {
+    if (is_grid) break;
     add_strip(intervals, edge, borders[static_cast<std::size_t>(edge)], out);
+  }
   return out.mesh();
 }
 

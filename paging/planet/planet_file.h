@@ -63,8 +63,17 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   // with what is wrong with the patch: a tile twice, a missing or a stray child, an inner tile made a finest one,
   // payloads that are no tile's, errors that do not nest, a meta of other tiles or of another planet. Like an opened
   // file it may still have borders that do not meet, which verify() finds.
-  std::shared_ptr<const PlanetFile> with(std::shared_ptr<const TilePatch> patch) const;
+  //
+  // `former` is the planet that was shown before, patched over the same file; null: this planet. Tiles and image tiles with
+  // the same content in both keep their numbers (version()), so that pages of theirs serve on: for animations, whose patches
+  // have most tiles in common. Planets over other files, or compared with another planet, share no numbers.
+  std::shared_ptr<const PlanetFile> with(std::shared_ptr<const TilePatch> patch,
+                                         const std::shared_ptr<const PlanetFile>& former = nullptr) const;
   bool is_patched() const { return overlay_ != nullptr; }
+  // Returns whether a patch has changed what a page of the tile is made of, at any time.
+  bool is_patched(const lod::TileKey& key, MadeOf made_of) const {
+    return overlay_ != nullptr && overlay_version(key, made_of) != file_->version_;
+  }
 
   // Returns this planet with another one of the same body, radius, shape and datum, which colour=difference subtracts.
   // Pages are the same, and so are the connections; an index of all tiles takes memory. Planets that with() returns keep
@@ -78,8 +87,9 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
 
   // Returns a number that no other planet of this process has, and that is larger than that of the planet under it.
   std::uint64_t version() const { return version_; }
-  // Returns the number of the last planet with which a page of the tile changed, among this one and those under it.
-  // Pages of one tile and one number are equal. For kImage, `key` must be that of an image tile.
+  // Returns the number of the last planet with which a page of the tile changed, among this one and those before it: its
+  // `former`, or else the planet under it, and so on. Pages of one tile and one number are equal. For kImage, `key` must be
+  // that of an image tile.
   std::uint64_t version(const lod::TileKey& key, MadeOf made_of = MadeOf::kTile) const {
     return overlay_ == nullptr ? version_ : overlay_version(key, made_of);
   }
@@ -122,7 +132,7 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
  private:
   struct Connection;
   PlanetFile(const std::string& path, BeforeRead before_read);
-  PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch);
+  PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch, const PlanetFile* former);
   PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile> earlier);
   static std::uint64_t next_version();
   void read_index(const Database& db);

@@ -188,17 +188,18 @@ std::string patched_identity(const std::string& base, const TilePatch& patch) {
 
 }  // namespace
 
-std::shared_ptr<const PlanetFile> PlanetFile::with(std::shared_ptr<const TilePatch> patch) const {
+std::shared_ptr<const PlanetFile> PlanetFile::with(std::shared_ptr<const TilePatch> patch,
+                                                   const std::shared_ptr<const PlanetFile>& former) const {
   try {
     if (!patch) refuse("there is none");
-    return std::shared_ptr<const PlanetFile>(new PlanetFile(*this, std::move(patch)));
+    return std::shared_ptr<const PlanetFile>(new PlanetFile(*this, std::move(patch), former.get()));
   } catch (const WrongPatch& e) {
     throw PlanetError(path_ + ": the patch cannot be laid over it: " + e.what() +
                       "; make the patch again, of this planet");
   }
 }
 
-PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch)
+PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch, const PlanetFile* former)
     : path_(base.path_),
       before_read_(base.before_read_),
       meta_(patch->meta),
@@ -242,6 +243,9 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> 
   overlay->add(patch, version_);
   overlay->include_radius(base.meta_.lowest_radius_m, base.meta_.highest_radius_m);
   overlay->include_radius(meta_.lowest_radius_m, meta_.highest_radius_m);
+  const bool can_share = former != nullptr && former->overlay_ && former->file_ == file_ &&
+                         former->compared_version_ == compared_version_;
+  if (can_share) overlay->follow(*former->overlay_, version_);
   overlay_ = std::move(overlay);
 }
 

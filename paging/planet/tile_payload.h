@@ -14,6 +14,8 @@ struct TilePayload {
   Bytes nodata;               // empty when every post has data
   Bytes origin;               // encode_origin(); empty when all posts with data have one source
   std::vector<Bytes> meshes;  // by variant
+
+  bool operator==(const TilePayload&) const = default;
 };
 
 }  // namespace paging

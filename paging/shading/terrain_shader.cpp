@@ -100,11 +100,13 @@ TerrainShader::TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size
       earlier_(earlier_surface(*planet_, shares.surface, budget_bytes)),
       heights_(share_of(shares.heights, budget_bytes)),
       normals_(share_of(shares.normals, budget_bytes)),
-      images_(share_of(shares.images, budget_bytes)) {}
+      images_(share_of(shares.images, budget_bytes)),
+      textures_(share_of(shares.textures, budget_bytes)) {}
 
 std::size_t TerrainShader::bytes_resident() const {
   const std::size_t earlier = earlier_ ? earlier_->bytes_resident() : 0;
-  return earlier + surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
+  return earlier + surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes() +
+         textures_.bytes();
 }
 
 void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes) {
@@ -115,6 +117,7 @@ void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std:
   heights_.set_limit(share_of(shares_.heights, budget_bytes));
   normals_.set_limit(share_of(shares_.normals, budget_bytes));
   images_.set_limit(share_of(shares_.images, budget_bytes));
+  textures_.set_limit(share_of(shares_.textures, budget_bytes));
 }
 
 std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key, MadeOf made_of,

@@ -95,13 +95,15 @@ struct ShadedTile {
   std::size_t bytes() const { return texels.capacity(); }
 };
 
-// Divides the budget of a TerrainShader; together at most 1. A larger share saves reading or computing its
+// Divides the budget of a TerrainShader; together at most 1, without `textures`. A larger share saves reading or computing its
 // tiles again, at the expense of the others.
 struct ShaderBudgetShares {
   double surface = 0.15;  // tiles of the reference surface, for shadows and flat shading
   double heights = 0.35;  // inputs of normals: a tile's neighbours are needed too
   double normals = 0.35;
   double images = 0.15;
+  // Beside the others: textures over tiles that a patch has changed, of which the next patch changes a part.
+  double textures = 0;
 };
 
 // Returns the version of a page of a tile that is made with a shading: PlanetFile::version(), and where shadows are
@@ -128,7 +130,8 @@ class TerrainShader {
   // Returns the number of texture intervals over a tile beyond which the data has no more detail.
   int useful_intervals(const lod::TileKey& key, ColourSource colour_source) const;
 
-  // Colours the grid of a tile. `intervals` must be 2^k times a power of two (>= 1). Throws PlanetError.
+  // Colours the grid of a tile. `intervals` must be 2^k times a power of two (>= 1). Where a patch has changed a part of what
+  // a kept texture shows, makes that part alone; the texels are the same. Throws PlanetError.
   ShadedTile shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const;
 
   // Computes one colour for each triangle of a tile's mesh, from its normal, the mean height of its corners,
@@ -195,6 +198,39 @@ class TerrainShader {
     }
   };
 
+  // Says what the texels of a block are made of.
+  struct BlockSource {
+    TileVersion ground;
+    TileVersion image;  // default: none
+    bool operator==(const BlockSource&) const = default;
+  };
+  // Holds a texture of a patched tile, to be made again in part.
+  struct KeptTexture {
+    ShadedTile tile;
+    std::vector<BlockSource> sources;  // by block, row by row
+    std::vector<bool> nodata;          // by block: some alpha is 0
+    std::size_t bytes() const;
+  };
+  struct TextureKey {
+    lod::TileKey tile;
+    int intervals;
+    ShadingParams params;
+    bool operator==(const TextureKey&) const = default;
+  };
+  struct TextureKeyHash {
+    std::size_t operator()(const TextureKey& k) const {
+      return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.intervals);
+    }
+  };
+  BlockSource block_source(const lod::TileKey& block, const ShadingParams& params) const;
+  // Colours those blocks of a texture that `is_wanted` names, in raw texels on post lines. Puts their flags into `nodata`.
+  void shade_blocks(const lod::TileKey& key, const std::vector<bool>& is_wanted, const ShadingParams& params,
+                    ShadedTile& out, std::vector<bool>& nodata) const;
+  // Makes again the blocks of a texture whose sources differ from those of the kept one. `out` has its channels and no
+  // texels. Fills in `out` and `nodata`.
+  void shade_changed(const lod::TileKey& key, const ShadingParams& params, const KeptTexture& kept,
+                     const std::vector<BlockSource>& sources, ShadedTile& out, std::vector<bool>& nodata) const;
+
   // Returns the deepest stored tile at or above `key`.
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
@@ -222,6 +258,7 @@ class TerrainShader {
   mutable vpe::base::LruCache<TileVersion, TileHeights, TileVersionHash> heights_;
   mutable vpe::base::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
   mutable vpe::base::LruCache<TileVersion, ImageTile, TileVersionHash> images_;
+  mutable vpe::base::LruCache<TextureKey, KeptTexture, TextureKeyHash> textures_;
 };
 
 }  // namespace paging

@@ -12,41 +12,6 @@ namespace {
 
 bool needs_vertical(ColourSource s) { return s == ColourSource::kSlope || s == ColourSource::kAspect; }
 
-// Resamples texels from post lines to lines even in u and v. Below level 5 a tile spans several knots of the
-// warp, and only on even lines are texture coordinates a projective function of the position on every flat
-// triangle.
-void make_even(const lod::TileKey& key, ShadedTile& tile) {
-  const auto side = static_cast<std::size_t>(tile.intervals) + 1;
-  const mars::ChartRect rect = lod::chart_rect(key);
-  const double tiles = std::ldexp(1.0, key.level);
-  const auto positions = [&](double from, double to, std::int32_t index) {
-    std::vector<GridPosition> at(side);
-    for (std::size_t x = 0; x < side; ++x) {
-      const double u = from + (to - from) * static_cast<double>(x) / tile.intervals;
-      const double s = (mars::face_parameter(u) * tiles - index) * tile.intervals;
-      const auto cell = static_cast<std::size_t>(std::clamp(s, 0.0, tile.intervals - 1.0));
-      at[x] = {cell, static_cast<float>(std::clamp(s - static_cast<double>(cell), 0.0, 1.0))};
-    }
-    return at;
-  };
-  const auto columns = positions(rect.u0, rect.u1, key.i);
-  const auto rows = positions(rect.v0, rect.v1, key.j);
-  const auto channels = static_cast<std::size_t>(tile.channels);
-  std::vector<std::uint8_t> even(tile.texels.size());
-  for (std::size_t y = 0; y < side; ++y) {
-    for (std::size_t x = 0; x < side; ++x) {
-      std::uint8_t* texel = &even[channels * (y * side + x)];
-      for (std::size_t c = 0; c < channels; ++c) {
-        texel[c] = to_byte(bilinear<float>(columns[x], rows[y], side, [&](std::size_t at) {
-          return static_cast<float>(tile.texels[channels * at + c]);
-        }));
-      }
-      if (channels == 4) texel[3] = texel[3] < 128 ? 0 : 255;
-    }
-  }
-  tile.texels = std::move(even);
-}
-
 }  // namespace
 
 void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
@@ -72,6 +37,13 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
 
   const auto ground_side = static_cast<std::size_t>(ground->side);
   const auto channels = static_cast<std::size_t>(out.channels);
+  // The same in all rows.
+  std::vector<GridPosition> ground_columns;
+  std::vector<GridPosition> image_columns;
+  for (int x = 0; x <= n; ++x) {
+    ground_columns.push_back(grid_position(gx, x, ground_steps, ground->side - 1));
+    if (image_block.tile) image_columns.push_back(grid_position(px, x, image_steps, kImageIntervals));
+  }
   Ground at;
   for (int y = 0; y <= n; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
@@ -80,7 +52,7 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
         &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
                                 static_cast<std::size_t>(x0))];
     for (int x = 0; x <= n; ++x, texel += channels) {
-      const GridPosition gxp = grid_position(gx, x, ground_steps, ground->side - 1);
+      const GridPosition& gxp = ground_columns[static_cast<std::size_t>(x)];
       at.height_m =
           bilinear<float>(gxp, gyp, ground_side, [&](std::size_t k) { return ground->posts[k].height_m; });
       at.normal =
@@ -94,7 +66,7 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
         at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
                                       lines.v[static_cast<std::size_t>(y)]);
       if (image_block.tile) {
-        const GridPosition pxp = grid_position(px, x, image_steps, kImageIntervals);
+        const GridPosition& pxp = image_columns[static_cast<std::size_t>(x)];
         at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
                                        [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
       }
@@ -177,32 +149,6 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
          {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(corner_is_nodata ? 0 : 255)})
       out.texels.push_back(byte);
   }
-  return out;
-}
-
-ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const {
-  const int n = planet_->meta().tile.intervals();
-  int levels = 0;
-  while (n << levels < intervals) ++levels;
-  ShadedTile out;
-  out.intervals = n << levels;
-  out.nodata_image = shows_image(params.colour_source);
-  const int side = out.intervals + 1;
-  // Light alone takes a quarter of the bytes, but has no alpha for nodata.
-  if (params.colour_source == ColourSource::kPlain && params.lit && !planet_->has_nodata(key)) {
-    out.channels = 1;
-    out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);
-  }
-  out.texels.resize(static_cast<std::size_t>(out.channels) * static_cast<std::size_t>(side) *
-                    static_cast<std::size_t>(side));
-  const int blocks = 1 << levels;
-  for (int by = 0; by < blocks; ++by) {
-    for (int bx = 0; bx < blocks; ++bx) {
-      const lod::TileKey block{key.face, key.level + levels, (key.i << levels) + bx, (key.j << levels) + by};
-      shade_block(block, bx * n, by * n, side, params, out);
-    }
-  }
-  if (key.level < 5) make_even(key, out);
   return out;
 }
 

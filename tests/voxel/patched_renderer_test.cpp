@@ -163,6 +163,48 @@ TEST_P(PatchedRenderer, DrawsWhatANewOneDraws) {
   EXPECT_GE(different, 12) << "the patch shall be seen in three of four views";
 }
 
+// Planets that follow each other keep what is the same in both; images after each step are those of a new renderer.
+TEST_P(PatchedRenderer, DrawsPlanetsThatFollowEachOtherAsNewOnesDo) {
+  std::vector<std::shared_ptr<const paging::TilePatch>> patches{patch_};
+  const glm::dvec3 beside = glm::normalize(kPatched + glm::dvec3(0, 0.05, 0));
+  int n = 0;
+  for (const test_support::PlanetChange& change :
+       {test_support::PlanetChange{.raised_m = 900, .is_finer = true, .has_image = true},
+        test_support::PlanetChange{.has_image = true, .tower = mars::Cap{beside, 0.006}}})
+    patches.push_back(patch_between(*base_, *build_changed(dir_ / (std::to_string(n++) + ".vpe"), change)));
+  for (const bool shadows : {false, true}) {
+    Drawer draw = make(base_);
+    Planet planet = base_;
+    for (const int state : {0, 1, 2, 1, 1, 0}) {
+      planet = base_->with(patches[static_cast<std::size_t>(state)], planet);
+      draw.change_planet(planet);
+      Drawer fresh = make(planet);
+      for (core::DrawRequest request : requests()) {
+        SCOPED_TRACE(testing::Message() << "state " << state << ", shadows " << shadows << ", height "
+                                        << glm::length(request.view.camera.position_m) - base_->radius_m());
+        request.settings.mode = core::Mode::kTextured;
+        request.settings.shadows = shadows;
+        request.sun =
+            mars::sun_direction(mars::lon_lat(glm::normalize(request.view.camera.position_m)), 250, 2);
+        expect_same(draw.draw(request), fresh.draw(request));
+      }
+    }
+    draw.change_planet(base_);
+    Drawer fresh = make(base_);
+    for (const core::DrawRequest& request : requests()) expect_same(draw.draw(request), fresh.draw(request));
+  }
+}
+
+TEST_P(PatchedRenderer, ReadsNothingAgainForAPatchWithEqualTiles) {
+  Drawer draw = make(base_);
+  draw.change_planet(patched_);
+  for (const core::DrawRequest& request : requests()) draw.draw(request);
+  reads_.take();
+  draw.change_planet(base_->with(std::make_shared<paging::TilePatch>(*patch_), patched_));
+  for (const core::DrawRequest& request : requests()) draw.draw(request);
+  EXPECT_TRUE(reads_.take().empty());
+}
+
 TEST_P(PatchedRenderer, LoadsOnlyTouchedTilesAgain) {
   Drawer draw = make(base_);
   const std::vector<core::DrawRequest> views = requests();

@@ -16,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 // Shares of the memory budget; the rest is for work in progress.
 constexpr double kTerrainShaderShare = 0.14;
+constexpr paging::ShaderBudgetShares kShaderShares{.textures = 0.7};  // a tenth of the budget
 constexpr double kMeshShare = 0.17;
 constexpr double kTextureShare = 0.34;
 constexpr double kLoadedShare = 0.05;
@@ -75,7 +76,7 @@ TileStreamer::TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, con
     : planet_(std::move(planet)),
       options_(options),
       memory_(bytes_for_tiles(options.memory_bytes, planet_->tree().bytes())),
-      terrain_shader_(std::make_shared<TerrainShader>(planet_, share(kTerrainShaderShare))),
+      terrain_shader_(std::make_shared<TerrainShader>(planet_, share(kTerrainShaderShare), kShaderShares)),
       loader_(planet_, terrain_shader_),
       load_([this](const PageKey& key) {
         if (options_.before_load) options_.before_load(key.tile);

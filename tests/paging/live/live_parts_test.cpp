@@ -235,6 +235,32 @@ TEST(StitchedGrid, CoversTheTileWithItsBorders) {
   }
 }
 
+TEST(StitchedGrid, IsTheGridOfEverySecondPostIfItsBordersAre) {
+  constexpr int kIntervals = 16;
+  lod::BorderPosts borders;
+  for (std::vector<int>& border : borders)
+    for (int a = 0; a <= kIntervals; a += 2) border.push_back(a);
+  const lod::TileMesh mesh = paging::stitched_grid(kIntervals, borders);
+  EXPECT_EQ(mesh.vertices.size(), 81U);
+  ASSERT_EQ(mesh.triangle_count(), 128U);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    int diagonals = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto a = mesh.vertices[mesh.triangles[t + c]];
+      const auto b = mesh.vertices[mesh.triangles[t + (c + 1) % 3]];
+      if (a.i != b.i && a.j != b.j) {
+        ++diagonals;
+        EXPECT_EQ(b.i - a.i, b.j - a.j) << "diagonals run from south-west to north-east";
+        EXPECT_EQ(std::abs(b.i - a.i), 2);
+      }
+    }
+    EXPECT_EQ(diagonals, 1);
+  }
+  // With one post more the strips beside the borders are triangulated.
+  borders[0].insert(borders[0].begin() + 1, 1);
+  EXPECT_EQ(paging::stitched_grid(kIntervals, borders).triangle_count(), 129U);
+}
+
 TEST(MemoryTiles, HoldWhatIsPutAndReadTheRest) {
   const TempDir dir;
   const Planet planet = build_live(dir / "planet.vpe");

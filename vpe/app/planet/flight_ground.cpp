@@ -136,7 +136,7 @@ std::shared_ptr<const PlanetFile> FlightGround::make(const scripts::GroundState&
   options.finest_spacing_m = finest_spacing_m;
   options.threads = threads_;
   made = maker_.make(*changed, options);
-  return made.patch ? base_->with(made.patch) : base_;
+  return made.patch ? base_->with(made.patch, planet_) : base_;
 }
 
 // Finds the distance of posts that all states can have.
