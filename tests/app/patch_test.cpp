@@ -134,8 +134,9 @@ TEST_F(PatchCommand, ReliefsDigAndBuild) {
   build();
   write_text(dir_ / "works.relief.toml",
              "version = 1\n"
-             "[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = 60000\ndepth_m = 5000\n"
-             "[[relief]]\nkind = \"pad\"\nlon = -60\nlat = 30\nradius_m = 50000\nfalloff_m = 50000\n");
+             "[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = 60000\ndepth_m = 5000\nspacing_m = 6000\n"
+             "[[relief]]\nkind = \"pad\"\nlon = -60\nlat = 30\nradius_m = 50000\nfalloff_m = 50000\n"
+             "spacing_m = 6000\n");
   const json patched = expect_full({"works.relief.toml"});
   EXPECT_EQ(patched["illustration"], true);
   EXPECT_LT(elevation_m("patched.vpe", "24,8"), elevation_m("p.vpe", "24,8") - 3000);
