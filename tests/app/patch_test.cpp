@@ -272,7 +272,7 @@ TEST_F(PatchCommand, WarpedEdgesChangeFadesElsewhere) {
   write_hills("border.tif", 1.6, 10, 0.02, 100, 300);
   write_hills("far.tif", 25, -10, 0.12, 40, 120);
   json_of({"build", "lowest.tif", "wide.tif", "fine.tif", "border.tif", "-o", "p.vpe", "--base-spacing",
-           "60000", "--datum", "areoid"});
+           "60000", "--spacing", "6000", "--datum", "areoid"});
   expect_full({"far.tif", "--align", "edges"});
 }
 
