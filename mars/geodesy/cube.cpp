@@ -40,7 +40,8 @@ double face_line(std::int64_t index, int grid_level) {
   const std::int64_t rest = distance & (gap - 1);
   const std::int64_t next = knot + 1 < kKnots.size() ? kKnots[knot + 1] : kKnots[knot];
   const std::int64_t scaled = (kKnots[knot] << gap_level) + (next - kKnots[knot]) * rest;
-  const double u = std::ldexp(static_cast<double>(scaled), -gap_level) * kKnotUnit;
+  // As exact as std::ldexp(), which takes much longer.
+  const double u = static_cast<double>(scaled) / static_cast<double>(gap) * kKnotUnit;
   return offset < 0 ? -u : u;
 }
 

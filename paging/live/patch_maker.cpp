@@ -278,8 +278,25 @@ class PatchMaker::Impl {
   const PatchInputs& inputs() const { return inputs_; }
 
   MadePatch make(const GroundChange& change, const PatchOptions& options) const {
+    PatchPlan plan = planned(change, options);
+    MadePatch made = described(plan);
+    if (plan.leaves.empty()) return made;
+    made.patch =
+        PatchJob(inputs_, change, options, std::move(plan), changed_meta(inputs_.planet->meta(), change)).run();
+    return made;
+  }
+
+  MadePatch plan(const GroundChange& change, const PatchOptions& options) const {
+    return described(planned(change, options));
+  }
+
+ private:
+  PatchPlan planned(const GroundChange& change, const PatchOptions& options) const {
     check_options(options);
-    PatchPlan plan = inputs_.planner.plan(change, options);
+    return inputs_.planner.plan(change, options);
+  }
+
+  MadePatch described(const PatchPlan& plan) const {
     MadePatch made;
     if (plan.leaves.empty()) return made;
     made.is_coarser = plan.is_coarser;
@@ -289,11 +306,9 @@ class PatchMaker::Impl {
     for (const lod::TileKey& key : plan.leaves) finest = std::max(finest, key.level);
     const PlanetMeta& meta = inputs_.planet->meta();
     made.spacing_m = lod::post_spacing_m(finest, meta.tile.intervals(), meta.radius_m);
-    made.patch = PatchJob(inputs_, change, options, std::move(plan), changed_meta(meta, change)).run();
     return made;
   }
 
- private:
   PatchInputs inputs_;
 };
 
@@ -311,6 +326,10 @@ double PatchMaker::ground_m(const glm::dvec3& direction) const {
 
 MadePatch PatchMaker::make(const GroundChange& change, const PatchOptions& options) const {
   return impl_->make(change, options);
+}
+
+MadePatch PatchMaker::plan(const GroundChange& change, const PatchOptions& options) const {
+  return impl_->plan(change, options);
 }
 
 }  // namespace paging

@@ -70,6 +70,10 @@ class PatchMaker {
   // cannot be read; mars::SourceError; std::invalid_argument for options out of range.
   MadePatch make(const GroundChange& change, const PatchOptions& options = {}) const;
 
+  // Returns what make() would, with a null `patch`, in a small part of the time: it finds the tiles and makes none. Throws
+  // what make() throws, except for heights that cannot be stored.
+  MadePatch plan(const GroundChange& change, const PatchOptions& options = {}) const;
+
  private:
   class Impl;
   std::unique_ptr<const Impl> impl_;

@@ -1,4 +1,5 @@
 // The examples in `vpe COMMAND --help` and in the manual page are command lines that the program accepts.
+#include <map>
 #include <regex>
 #include <sstream>
 
@@ -25,16 +26,20 @@ class Examples : public AppTest {
   // Returns the words of every command, such as {"report", "all"}.
   std::vector<Words> commands() const {
     std::vector<Words> all;
-    for (const std::string& name : subcommands(vpe({"--help"}).out)) {
+    for (const std::string& name : subcommands(help_of({}))) {
       all.push_back({name});
-      for (const std::string& inner : subcommands(vpe({name, "--help"}).out)) all.push_back({name, inner});
+      for (const std::string& inner : subcommands(help_of({name}))) all.push_back({name, inner});
     }
     return all;
   }
 
-  std::string help_of(Words words) const {
+  // Both tests read the same texts.
+  const std::string& help_of(Words words) const {
+    static std::map<Words, std::string> texts;
+    std::string& text = texts[words];
     words.emplace_back("--help");
-    return vpe(words).out;
+    if (text.empty()) text = vpe(words).out;
+    return text;
   }
 
   // Returns the command lines at the end of a help text.

@@ -15,14 +15,19 @@
 namespace {
 
 using objects::Model;
-using vpe::app::cached_levels;
+using vpe::app::KeptLevels;
+
+constexpr std::size_t kLeastTriangles = 2000;
 
 class LevelCache : public ::testing::Test {
  protected:
   static objects::Mesh large() {
-    objects::Mesh mesh = objects::make_ellipsoid({1, 2, 1}, 145);
-    EXPECT_GT(mesh.triangles.size(), vpe::app::kLeastCachedTriangles);
+    objects::Mesh mesh = objects::make_ellipsoid({1, 2, 1}, 49);
+    EXPECT_GT(mesh.triangles.size(), kLeastTriangles);
     return mesh;
+  }
+  static KeptLevels cached_levels(objects::Mesh mesh, const std::filesystem::path& folder) {
+    return vpe::app::cached_levels(std::move(mesh), folder, kLeastTriangles);
   }
 
   std::vector<std::filesystem::path> files() const {
@@ -93,9 +98,18 @@ TEST_F(LevelCache, SmallMeshesAndMissingFoldersAreNoTrouble) {
   EXPECT_GT(cached_levels(large(), dir_ / "file").levels.size(), 1U);  // no folder can be made there
 }
 
+TEST_F(LevelCache, ModelsOfTwentyThousandTrianglesAreKept) {
+  (void)vpe::app::cached_levels(large(), folder());
+  EXPECT_TRUE(files().empty());
+  objects::Mesh mesh = objects::make_ellipsoid({1, 2, 1}, 145);
+  ASSERT_EQ(mesh.triangles.size(), 20'590U);
+  EXPECT_GT(vpe::app::cached_levels(std::move(mesh), folder()).levels.size(), 1U);
+  EXPECT_EQ(files().size(), 1U);
+}
+
 TEST_F(LevelCache, WithoutTheProgramThereIsTheFinestLevelAndANote) {
   ASSERT_EQ(::setenv("VPE_MODEL_LEVELS", "/nonexistent", 1), 0);
-  const vpe::app::KeptLevels made = cached_levels(large(), folder());
+  const KeptLevels made = cached_levels(large(), folder());
   ::unsetenv("VPE_MODEL_LEVELS");
   EXPECT_TRUE(files().empty());
   EXPECT_NE(made.note.find("vpe-model-levels is missing"), std::string::npos) << made.note;

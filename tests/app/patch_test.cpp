@@ -57,8 +57,22 @@ class PatchCommand : public AppTest {
     return result.exit_code == 0 ? parse_json(result.out) : json();
   }
 
-  // Builds the planet that is patched.
-  json build(const Words& more = {}) const {
+  // Builds the planet that is patched; without options a copy of the one that an earlier test built.
+  json build() const {
+    static const test_support::TempDir folder;
+    static json built;
+    static std::filesystem::file_time_type time;  // of the raster, which planets remember
+    if (built.empty()) {
+      built = build_with({});
+      time = std::filesystem::last_write_time(dir_ / "globe.tif");
+      std::filesystem::copy_file(dir_ / "p.vpe", folder / "p.vpe");
+    } else {
+      std::filesystem::copy_file(folder / "p.vpe", dir_ / "p.vpe");
+      std::filesystem::last_write_time(dir_ / "globe.tif", time);
+    }
+    return built;
+  }
+  json build_with(const Words& more) const {
     Words words{"build", "globe.tif", "-o", "p.vpe", "--base-spacing", "21000", "--datum", "areoid"};
     words.insert(words.end(), more.begin(), more.end());
     return json_of(words);
@@ -101,7 +115,7 @@ TEST_F(PatchCommand, GivesThePlanetOfAFullBuild) {
 }
 
 TEST_F(PatchCommand, AlignsAndMasks) {
-  build({"--image", "globe.tif"});
+  build_with({"--image", "globe.tif"});
   Dem mask;
   mask.width = mask.height = 20;
   mask.west_deg = 21;
@@ -125,17 +139,19 @@ TEST_F(PatchCommand, AlignsAndMasks) {
 }
 
 TEST_F(PatchCommand, ImagesAreAdded) {
-  build({"--image", "globe.tif"});
+  build_with({"--image", "globe.tif"});
   const json patched = expect_full({"--image", "strip.tif"});
   EXPECT_EQ(patched["image_sources"].size(), 2U);
 }
 
 TEST_F(PatchCommand, ReliefsDigAndBuild) {
   build();
-  write_text(dir_ / "works.relief.toml",
-             "version = 1\n"
-             "[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = 60000\ndepth_m = 5000\n"
-             "[[relief]]\nkind = \"pad\"\nlon = -60\nlat = 30\nradius_m = 50000\nfalloff_m = 50000\n");
+  write_text(
+      dir_ / "works.relief.toml",
+      "version = 1\n"
+      "[[relief]]\nkind = \"crater\"\nlon = 24\nlat = 8\nradius_m = 60000\ndepth_m = 5000\nspacing_m = 6000\n"
+      "[[relief]]\nkind = \"pad\"\nlon = -60\nlat = 30\nradius_m = 50000\nfalloff_m = 50000\n"
+      "spacing_m = 6000\n");
   const json patched = expect_full({"works.relief.toml"});
   EXPECT_EQ(patched["illustration"], true);
   EXPECT_LT(elevation_m("patched.vpe", "24,8"), elevation_m("p.vpe", "24,8") - 3000);
@@ -156,7 +172,7 @@ TEST_F(PatchCommand, ReliefsDigAndBuild) {
 }
 
 TEST_F(PatchCommand, PlanetsOfRegionsGetAnother) {
-  build({"--region=-40,-10,-20,10", "--spacing", "10000"});
+  build_with({"--region=-40,-10,-20,10", "--spacing", "10000"});
   const Result outside = vpe({"patch", "p.vpe", "strip.tif", "-o", "coarse.vpe"});
   EXPECT_EQ(outside.exit_code, 0) << outside.err;
   const json patched = expect_full({"strip.tif", "--region", "20,4,28,12"});
@@ -182,10 +198,10 @@ TEST_F(PatchCommand, SourcesThatMovedAreFound) {
 
 // A repeatable option takes one value each time: what follows is a raster.
 TEST_F(PatchCommand, RastersAfterOptionsAreRasters) {
-  const json built = build({"--image", "globe.tif", "strip.tif"});
+  const json built = build_with({"--image", "globe.tif", "strip.tif"});
   EXPECT_EQ(built["sources"].size(), 2U);
   EXPECT_EQ(built["image_sources"].size(), 1U);
-  EXPECT_EQ(build({"strip.tif", "--force"})["sources"].size(), 2U);
+  EXPECT_EQ(build_with({"strip.tif", "--force"})["sources"].size(), 2U);
 }
 
 // A mask, like the areoid, is no source of its own, but decides what the planet has.
@@ -197,7 +213,7 @@ TEST_F(PatchCommand, AChangedMaskIsNoticed) {
   mask.cell_deg = 0.4;
   mask.height_m = [](int column, int) { return column < 10 ? 1.0 : 0.0; };
   write_dem(dir_ / "mask=1.tif", mask);
-  build({"strip.tif", "--mask", "strip.tif=mask=1.tif"});
+  build_with({"strip.tif", "--mask", "strip.tif=mask=1.tif"});
   mask.height_m = [](int column, int) { return column < 10 ? 0.0 : 1.0; };
   write_dem(dir_ / "mask=1.tif", mask);
   write_inset("far.tif", 100, 12, 0);
@@ -231,7 +247,7 @@ TEST_F(PatchCommand, TheSameSourceTwiceIsRefused) {
 TEST_F(PatchCommand, OptionsAreOfTheAddedRaster) {
   std::filesystem::create_directory(dir_ / "a");
   std::filesystem::rename(dir_ / "strip.tif", dir_ / "a/strip.tif");
-  build({"a/strip.tif"});
+  build_with({"a/strip.tif"});
   write_inset("strip.tif", 60, 12, kOff_m);
   const json patched = expect_full({"strip.tif", "--align", "plane"});
   for (const json& source : patched["sources"]) {
@@ -256,7 +272,7 @@ TEST_F(PatchCommand, WarpedEdgesChangeFadesElsewhere) {
   write_hills("border.tif", 1.6, 10, 0.02, 100, 300);
   write_hills("far.tif", 25, -10, 0.12, 40, 120);
   json_of({"build", "lowest.tif", "wide.tif", "fine.tif", "border.tif", "-o", "p.vpe", "--base-spacing",
-           "60000", "--datum", "areoid"});
+           "60000", "--spacing", "6000", "--datum", "areoid"});
   expect_full({"far.tif", "--align", "edges"});
 }
 

@@ -61,7 +61,7 @@ TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
     EXPECT_EQ(a["kind"], "measured");
     EXPECT_EQ(a["measured_m"], a["elevation_m"]);
   }
-  ASSERT_EQ(vpe({"build", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing", "100",
+  ASSERT_EQ(vpe({"build", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing", "800",
                  "--base-spacing", "60000", "-o", "mars.vpe", "--quiet"})
                 .exit_code,
             0);
@@ -89,7 +89,7 @@ TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
 }
 
 TEST_F(Query, DetailMayBeLeftOutOrPutBelowOtherData) {
-  const Words fine{"--region", "10,5,10.2,5.2", "--spacing", "200", "--base-spacing", "60000", "--quiet"};
+  const Words fine{"--region", "10,5,10.2,5.2", "--spacing", "800", "--base-spacing", "60000", "--quiet"};
   const auto build = [&](Words words, const std::string& planet) {
     words.insert(words.begin(), "build");
     words.insert(words.end(), fine.begin(), fine.end());
@@ -113,7 +113,7 @@ TEST_F(Query, DetailMayBeLeftOutOrPutBelowOtherData) {
   EXPECT_EQ(flat["kind"], "synthetic");
   EXPECT_EQ(flat["source"], "embedded-detail below flat.tif");
   EXPECT_GT(std::abs(flat["elevation_m"].get<double>() - 1500), 1);
-  // To within what straight facets, 160 m wide, change of the detail.
+  // To within what straight facets, 650 m wide, change of the detail.
   EXPECT_NEAR(flat["measured_m"].get<double>(), 1500, 5);
 
   expect_failure({"build", "flat.tif", "--detail", "synthetic", "-o", "x.vpe"}, 2, {"--detail", "--spacing"});

@@ -56,10 +56,17 @@ double walls(const glm::dvec3& d) {
   return (i + j) % 2 == 0 ? 0.0 : 4000.0;
 }
 
-TEST_P(RendererContract, CertificatesHoldOnWalls) {
-  const auto planet = build_fake(
-      dir_ / "walls.vpe",
+// Returns a planet of walls, made once for all tests.
+std::shared_ptr<const paging::PlanetFile> walled_planet() {
+  static const test_support::TempDir folder;
+  static const auto planet = build_fake(
+      folder / "walls.vpe",
       FakeElevation(walls, test_support::fine_around(mars::direction({0.5, 0.5}), 0.008, 60)), 100000);
+  return planet;
+}
+
+TEST_P(RendererContract, CertificatesHoldOnWalls) {
+  const auto planet = walled_planet();
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = make(planet);
   double worst = 0;
@@ -254,9 +261,7 @@ TEST_P(RendererContract, WeightsOfABudgetMoveItsLosses) {
 
 // A wall close before a camera that is high above the foot of the wall.
 TEST_P(RendererContract, WallsBesideTheCameraAreNotSeenThrough) {
-  const auto planet = build_fake(
-      dir_ / "walls.vpe",
-      FakeElevation(walls, test_support::fine_around(mars::direction({0.5, 0.5}), 0.008, 60)), 100000);
+  const auto planet = walled_planet();
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = make(planet);
   int views = 0;

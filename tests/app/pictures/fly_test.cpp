@@ -148,9 +148,9 @@ class FlySignals : public Fly {
  protected:
   void SetUp() override {
     Fly::SetUp();
-    // A hundred thousand frames: only the signal ends it.
+    // Ten thousand frames: only the signal ends it. The first segment of a video has 40 of them.
     write_text(dir_ / "long.flight",
-               "flight 1\nview size=96x54 fps=100\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
+               "flight 1\nview size=96x54 fps=10\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
                "at 1000 pose lon=90 lat=0 alt=500000 pitch=-40\n");
   }
   Result stop(const Words& arguments, int signal, std::function<bool()> when) const {
@@ -191,7 +191,7 @@ TEST_F(FlySignals, WhileAVideoIsMade) {
                [&] { return exists(std::string(name) + ".parts/segment_000000.json"); });
       EXPECT_TRUE(result.signalled);
       EXPECT_EQ(result.exit_code, code) << "signal " << result.signal;
-      EXPECT_TRUE(says(result.err, {"stopped", "of 100000 frames are there", "the same command continues"}));
+      EXPECT_TRUE(says(result.err, {"stopped", "of 10000 frames are there", "the same command continues"}));
       // Whole segments stay for the next run; nothing half-written does.
       EXPECT_EQ(leftovers(), Words{std::string(name) + ".parts"});
       fs::remove_all(dir_ / (std::string(name) + ".parts"));

@@ -19,7 +19,7 @@ using test_support::Random;
 constexpr unsigned kSeed = 20261126;
 constexpr int kWidth = 120;
 constexpr int kHeight = 90;
-constexpr int kKinds = 50;
+constexpr int kKinds = 15;  // each is read and simplified by processes of its own
 
 // Writes a mesh as OBJ, y up: model axes x right, y forward, z up are -x, z, y there.
 void write_obj(const objects::Mesh& mesh, const std::filesystem::path& file) {
@@ -42,12 +42,22 @@ objects::Mesh kind(int n) {
 
 class ObjectBackends : public test_support::GlTest {
  protected:
-  ObjectBackends()
-      : planet_(bumpy_planet()),
-        surface_(planet_, std::size_t{4} << 20),
-        rays_(vpe::app::with_objects(vpe::voxel::make_ray_renderer(planet_, {std::size_t{256} << 20, 2}),
-                                     planet_, {})),
-        triangles_(vpe::app::with_objects(renderer(planet_), planet_, {})) {}
+  // All tests share the renderers, which keep the models.
+  static void SetUpTestSuite() {
+    GlTest::SetUpTestSuite();
+    const auto planet = bumpy_planet();
+    rays_ =
+        vpe::app::with_objects(vpe::voxel::make_ray_renderer(planet, {std::size_t{256} << 20, 2}), planet, {});
+    triangles_ = vpe::app::with_objects(
+        vpe::gl::make_polygon_renderer(context_, planet, {std::size_t{256} << 20, 2, {}}), planet, {});
+  }
+  static void TearDownTestSuite() {
+    rays_.reset();
+    triangles_.reset();
+    GlTest::TearDownTestSuite();
+  }
+
+  ObjectBackends() : planet_(bumpy_planet()), surface_(planet_, std::size_t{4} << 20) {}
 
   static std::shared_ptr<const paging::PlanetFile> bumpy_planet() {
     static const test_support::TempDir folder;
@@ -56,7 +66,7 @@ class ObjectBackends : public test_support::GlTest {
     return planet;
   }
 
-  // Writes 400 objects of 50 kinds, 0.5 to 12 km high, within some 200 km of a place.
+  // Writes 400 objects of 15 kinds, 0.5 to 12 km high, within some 200 km of a place.
   std::string write_scene(const mars::LonLat& middle, Random& random) const {
     static const test_support::TempDir folder;
     std::string text = "version = 1\n";
@@ -151,9 +161,11 @@ class ObjectBackends : public test_support::GlTest {
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   paging::Surface surface_;
-  std::unique_ptr<core::PixelRenderer> rays_;
-  std::unique_ptr<core::Renderer> triangles_;
+  static std::unique_ptr<core::PixelRenderer> rays_;
+  static std::unique_ptr<core::Renderer> triangles_;
 };
+std::unique_ptr<core::PixelRenderer> ObjectBackends::rays_;
+std::unique_ptr<core::Renderer> ObjectBackends::triangles_;
 
 TEST_F(ObjectBackends, ShowTheSame) { compare(8); }
 

@@ -15,11 +15,18 @@ using nlohmann::json;
 // The embedded Mars with synthetic detail within 0.2 degrees about 63 W, 12.6 S alone.
 class Synthetic : public AppTest {
  protected:
+  static void SetUpTestSuite() { built_ = std::make_unique<test_support::TempDir>(); }
+  static void TearDownTestSuite() { built_.reset(); }
+  // All tests share the planet.
   void SetUp() override {
-    const Result built =
-        vpe({"build", "embedded", "--image", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing",
-             "400", "--base-spacing", "60000", "--image-spacing", "2000", "-o", "mars.vpe", "--quiet"});
-    ASSERT_EQ(built.exit_code, 0) << built.err;
+    const std::filesystem::path planet = *built_ / "mars.vpe";
+    if (!std::filesystem::exists(planet)) {
+      const Result built =
+          vpe({"build", "embedded", "--image", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing",
+               "400", "--base-spacing", "60000", "--image-spacing", "2000", "-o", planet.string(), "--quiet"});
+      ASSERT_EQ(built.exit_code, 0) << built.err;
+    }
+    std::filesystem::copy_file(planet, dir_ / "mars.vpe");
   }
   // Renders straight down from 2500 km above the region, where a pixel is 19 km wide.
   vpe::core::RgbImage render(const std::string& backend, const std::string& inspect,
@@ -32,7 +39,11 @@ class Synthetic : public AppTest {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return vpe::core::read_image(dir_ / "x.png");
   }
+
+ private:
+  static std::unique_ptr<test_support::TempDir> built_;
 };
+std::unique_ptr<test_support::TempDir> Synthetic::built_;
 
 TEST_F(Synthetic, AnImageTintsItWithEitherBackend) {
   for (const std::string backend : {"polygon", "ray"}) {

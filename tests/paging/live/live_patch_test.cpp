@@ -6,6 +6,7 @@
 #include <set>
 #include <thread>
 
+#include "paging/live/composed_change.h"
 #include "paging/surface/query.h"
 #include "tests/paging/live/live_fixture.h"
 #include "tests/paging/patch_between.h"
@@ -346,6 +347,33 @@ TEST_F(LivePatch, AChangeThatAsksForTooMuchIsCoarserAndSaysSo) {
   } catch (const paging::PlanetError& e) {
     EXPECT_NE(std::string(e.what()).find("a patch may have 1"), std::string::npos) << e.what();
   }
+}
+
+// Many tiles, few of them, finest tiles of the planet alone, and none.
+TEST_F(LivePatch, APlanSaysWhatIsMade) {
+  const paging::PatchMaker maker(planet_);
+  const auto change_of = [](double radius_m, double spacing_m) {
+    return paging::relief_change(relief::place({crater_at(live_places()[5], radius_m, spacing_m)},
+                                               planet_->radius_m(), [](const glm::dvec3&) { return 0.0; }));
+  };
+  for (const double spacing_m : {9000.0, 2500.0}) {
+    for (const std::size_t most : {std::size_t{20}, std::size_t{2048}}) {
+      const auto change = change_of(20000, spacing_m);
+      const PatchOptions options{.full_grids = true, .most_finest_tiles = most, .threads = 2};
+      const MadePatch made = maker.make(*change, options);
+      const MadePatch planned = maker.plan(*change, options);
+      ASSERT_NE(made.patch, nullptr);
+      EXPECT_EQ(planned.patch, nullptr);
+      EXPECT_EQ(planned.spacing_m, made.spacing_m);
+      EXPECT_EQ(planned.is_coarser, made.is_coarser);
+      EXPECT_EQ(planned.finest_tiles, made.finest_tiles);
+      EXPECT_EQ(planned.tiles, made.tiles);
+    }
+  }
+  EXPECT_TRUE(maker.plan(*change_of(20000, 100), {.most_finest_tiles = 100}).is_coarser);
+  const auto none = paging::changes_in_order({});
+  EXPECT_EQ(maker.plan(*none).tiles, 0);
+  EXPECT_THROW(maker.plan(*none, {.most_finest_tiles = 0}), std::invalid_argument);
 }
 
 TEST_F(LivePatch, ErrorsSayWhatIsWrong) {

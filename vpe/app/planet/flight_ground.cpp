@@ -127,15 +127,19 @@ std::shared_ptr<const GroundChange> FlightGround::change(const scripts::GroundSt
   return changes.empty() ? nullptr : paging::changes_in_order(std::move(changes));
 }
 
-std::shared_ptr<const PlanetFile> FlightGround::make(const scripts::GroundState& state, double finest_spacing_m,
-                                                     paging::MadePatch& made) const {
-  const std::shared_ptr<const GroundChange> changed = change(state);
-  if (!changed) return base_;
+paging::PatchOptions FlightGround::patch_options(double finest_spacing_m) const {
   paging::PatchOptions options;
   options.full_grids = true;
   options.finest_spacing_m = finest_spacing_m;
   options.threads = threads_;
-  made = maker_.make(*changed, options);
+  return options;
+}
+
+std::shared_ptr<const PlanetFile> FlightGround::make(const scripts::GroundState& state,
+                                                     double finest_spacing_m) const {
+  const std::shared_ptr<const GroundChange> changed = change(state);
+  if (!changed) return base_;
+  const paging::MadePatch made = maker_.make(*changed, patch_options(finest_spacing_m));
   return made.patch ? base_->with(made.patch, planet_) : base_;
 }
 
@@ -146,11 +150,12 @@ void FlightGround::find_spacing() {
   const std::vector<double>& times_s = tracks_.times_s();
   const std::size_t step = times_s.size() / kMostTried + 1;
   for (std::size_t n = 0; n < times_s.size(); n += step) {
-    paging::MadePatch made;
-    (void)make(tracks_.at(times_s[n]), spacing_m, made);
-    if (!made.is_coarser) continue;
+    const std::shared_ptr<const GroundChange> changed = change(tracks_.at(times_s[n]));
+    if (!changed) continue;
+    const paging::MadePatch planned = maker_.plan(*changed, patch_options(spacing_m));
+    if (!planned.is_coarser) continue;
     is_coarser_ = true;
-    spacing_m = std::max(spacing_m, made.spacing_m);
+    spacing_m = std::max(spacing_m, planned.spacing_m);
   }
   finest_spacing_m_ = spacing_m;
 }
@@ -164,9 +169,8 @@ std::shared_ptr<const PlanetFile> FlightGround::planet(const scripts::GroundStat
   if (state.empty()) return base_;
   if (state_ == state) return planet_;
   find_spacing();
-  paging::MadePatch made;
   state_.reset();
-  planet_ = make(state, *finest_spacing_m_, made);
+  planet_ = make(state, *finest_spacing_m_);
   state_ = state;
   return planet_;
 }

@@ -47,15 +47,16 @@ class FlightGround {
   // a planet's heights.
   double height_m(mars::LonLat place, double exaggeration, double time_s);
 
-  // Returns true if posts are farther apart than the flight asks for. Makes planets.
+  // Returns true if posts are farther apart than the flight asks for.
   bool is_coarser();
 
   const scripts::GroundTracks& tracks() const { return tracks_; }
 
  private:
   std::shared_ptr<const paging::GroundChange> change(const scripts::GroundState& state) const;
-  std::shared_ptr<const paging::PlanetFile> make(const scripts::GroundState& state, double finest_spacing_m,
-                                                 paging::MadePatch& made) const;
+  paging::PatchOptions patch_options(double finest_spacing_m) const;
+  std::shared_ptr<const paging::PlanetFile> make(const scripts::GroundState& state,
+                                                 double finest_spacing_m) const;
   void open(const std::string& file);
   void find_spacing();
 

@@ -79,8 +79,8 @@ KeptLevels made_levels(objects::Mesh&& mesh) {
 
 }  // namespace
 
-KeptLevels cached_levels(objects::Mesh mesh, const std::filesystem::path& folder) {
-  if (mesh.triangles.size() < kLeastCachedTriangles || folder.empty()) return made_levels(std::move(mesh));
+KeptLevels cached_levels(objects::Mesh mesh, const std::filesystem::path& folder, std::size_t least_triangles) {
+  if (mesh.triangles.size() < least_triangles || folder.empty()) return made_levels(std::move(mesh));
   const std::filesystem::path file = folder / digest_name(mesh);
   if (const Bytes kept = read_kept(file); !kept.empty()) {
     try {

@@ -21,8 +21,9 @@ struct KeptLevels {
 };
 
 // Returns what objects::make_levels_apart() returns, or the finest level alone and why that failed. Takes the coarse levels
-// of large meshes from a file of the folder, whose name is a digest of the mesh, or makes and keeps them there. A
-// damaged file is made again; a folder that cannot be written is left alone.
-KeptLevels cached_levels(objects::Mesh mesh, const std::filesystem::path& folder);
+// of meshes of at least so many triangles from a file of the folder, whose name is a digest of the mesh, or makes and
+// keeps them there. A damaged file is made again; a folder that cannot be written is left alone.
+KeptLevels cached_levels(objects::Mesh mesh, const std::filesystem::path& folder,
+                         std::size_t least_triangles = kLeastCachedTriangles);
 
 }  // namespace vpe::app
