@@ -9,77 +9,62 @@
 // where its plane is anywhere. The corner opposite to its longest edge takes the depth of that edge beside it,
 // which moves the sliver by its height in the image, and leaves no slope of depth across.
 layout(triangles) in;
-layout(triangle_strip, max_vertices = 6) out;
+layout(triangle_strip, max_vertices = 4) out;
 layout(location = LOCATION_STEPS) uniform vec2 steps;
 void interpolate(int from, int to, float share);
 
 const float kSliver_steps = 1.5;
-
-// A corner of what is drawn, on the edge between two corners of the triangle.
-struct Corner {
-  vec4 p;
-  int from;
-  int to;
-  float share;
-};
-
-float near() { return gl_in[0].gl_Position.z; }
 
 vec4 on_grid(vec4 p) {
   if (max(abs(p.x), abs(p.y)) < 4.0 * p.w) p.xy = round(p.xy / p.w * steps) / steps * p.w;
   return p;
 }
 
-Corner whole(int k) { return Corner(on_grid(gl_in[k].gl_Position), k, k, 0.0); }
-
-Corner cut(int front, int behind) {
-  vec4 p = gl_in[front].gl_Position;
-  vec4 q = gl_in[behind].gl_Position;
-  float share = (near() - q.w) / (p.w - q.w);
-  return Corner(on_grid(vec4(mix(q.xy, p.xy, share), near(), near())), behind, front, share);
-}
-
-void draw(Corner corner[3]) {
-  vec2 at[3];
-  for (int k = 0; k < 3; ++k) at[k] = corner[k].p.xy / corner[k].p.w * steps;
+// Stages of this kind execute all branches for all triangles on a CPU, so cut and whole ones share one way: each corner lies
+// on the edge from `behind` to `front`, which are one corner of the triangle where nothing is cut.
+void main() {
+  float near = gl_in[0].gl_Position.z;
+  bvec3 in_front =
+      greaterThan(vec3(gl_in[0].gl_Position.w, gl_in[1].gl_Position.w, gl_in[2].gl_Position.w), vec3(near));
+  int count = int(in_front.x) + int(in_front.y) + int(in_front.z);
+  if (count == 0) return;
+  // The corner that is alone on its side, and those after it.
+  bool lone = count == 1;
+  int k = in_front.x == lone ? 0 : in_front.y == lone ? 1 : 2;
+  if (count == 3) k = 0;
+  int a = k == 2 ? 0 : k + 1;
+  int b = a == 2 ? 0 : a + 1;
+  ivec4 front = count == 3 ? ivec4(0, 1, 2, 2) : lone ? ivec4(k) : ivec4(a, b, a, b);
+  ivec4 behind = count == 3 ? ivec4(0, 1, 2, 2) : lone ? ivec4(k, a, b, b) : ivec4(a, b, k, k);
+  int corners = count == 2 ? 4 : 3;
+  vec4 corner[4];
+  vec4 share = vec4(0.0);
+  vec2 at[4];
+  for (int n = 0; n < 4; ++n) {
+    vec4 p = gl_in[front[n]].gl_Position;
+    vec4 q = gl_in[behind[n]].gl_Position;
+    if (front[n] != behind[n]) {
+      share[n] = (near - q.w) / (p.w - q.w);
+      p = vec4(mix(q.xy, p.xy, share[n]), near, near);
+    }
+    corner[n] = on_grid(p);
+    at[n] = corner[n].xy / corner[n].w * steps;
+  }
   vec3 opposite = vec3(distance(at[1], at[2]), distance(at[2], at[0]), distance(at[0], at[1]));
   float longest = max(max(opposite.x, opposite.y), opposite.z);
-  int k = opposite.x == longest ? 0 : opposite.y == longest ? 1 : 2;
-  int a = (k + 1) % 3;
-  int b = (k + 2) % 3;
-  vec2 base = at[b] - at[a];
-  vec2 side = at[k] - at[a];
+  int apex = opposite.x == longest ? 0 : opposite.y == longest ? 1 : 2;
+  int left = apex == 2 ? 0 : apex + 1;
+  int right = left == 2 ? 0 : left + 1;
+  vec2 base = at[right] - at[left];
+  vec2 side = at[apex] - at[left];
   if (longest > 0.0 && abs(base.x * side.y - base.y * side.x) < kSliver_steps * longest) {
-    float share = clamp(dot(base, side) / (longest * longest), 0.0, 1.0);
-    corner[k].p.z = near() * corner[k].p.w * mix(1.0 / corner[a].p.w, 1.0 / corner[b].p.w, share);
+    float along = clamp(dot(base, side) / (longest * longest), 0.0, 1.0);
+    corner[apex].z = near * corner[apex].w * mix(1.0 / corner[left].w, 1.0 / corner[right].w, along);
   }
-  for (int n = 0; n < 3; ++n) {
-    gl_Position = corner[n].p;
-    interpolate(corner[n].from, corner[n].to, corner[n].share);
+  for (int n = 0; n < corners; ++n) {
+    gl_Position = corner[n];
+    interpolate(behind[n], front[n], share[n]);
     EmitVertex();
   }
   EndPrimitive();
-}
-
-void main() {
-  bvec3 in_front =
-      greaterThan(vec3(gl_in[0].gl_Position.w, gl_in[1].gl_Position.w, gl_in[2].gl_Position.w), vec3(near()));
-  int count = int(in_front.x) + int(in_front.y) + int(in_front.z);
-  if (count == 0) return;
-  if (count == 3) {
-    draw(Corner[3](whole(0), whole(1), whole(2)));
-    return;
-  }
-  int k = 0;  // the corner that is alone on its side
-  while (in_front[k] != (count == 1)) ++k;
-  int a = (k + 1) % 3;
-  int b = (k + 2) % 3;
-  if (count == 1) {
-    draw(Corner[3](whole(k), cut(k, a), cut(k, b)));
-  } else {
-    Corner first = whole(a);
-    Corner last = cut(b, k);
-    draw(Corner[3](first, whole(b), last));
-    draw(Corner[3](first, last, cut(a, k)));
-  }
 }
