@@ -33,7 +33,7 @@ struct ImageRequest {
   double flight_time_s = 0;  // for the overlay of that name
   // How the flight that is followed changes the ground, at flight_time_s; null: it does not.
   std::shared_ptr<const scripts::GroundTracks> ground;
-  // What changes the ground after that; null: nothing.
+  // Reliefs that change the ground after that; null: none.
   std::shared_ptr<const std::vector<relief::ReliefSpec>> reliefs;
   std::optional<double> logged_s;  // its time in the log while a session is recorded
   bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is one grid
