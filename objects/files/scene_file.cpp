@@ -1,14 +1,12 @@
 #include "objects/files/scene_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <stdexcept>
 
 #include "objects/files/model_references.h"
 #include "objects/files/scene_limits.h"
 #include "vpe/base/file.h"
-#include "vpe/base/number.h"
 
 namespace objects {
 
@@ -24,16 +22,6 @@ std::string problem_of_scene_text(std::string_view text, std::size_t most_bytes)
 }
 
 }  // namespace
-
-bool is_within(double value, const NumberRange& range) {
-  if (!std::isfinite(value)) return false;
-  return value <= range.most && (range.is_open ? value > range.least : value >= range.least);
-}
-
-std::string range_text(const NumberRange& range) {
-  return std::string("a number in ") + (range.is_open ? "(" : "[") + vpe::base::format_number(range.least) +
-         ", " + vpe::base::format_number(range.most) + "]";
-}
 
 std::string problem_of_name(std::string_view name) { return problem_of_scene_text(name, kMostNameBytes); }
 

@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
+#include "vpe/base/number_range.h"
+
 namespace objects {
 
-struct NumberRange {
-  double least;
-  double most;
-  bool is_open = false;  // least itself is excluded
-};
+using vpe::base::is_within;
+using vpe::base::NumberRange;
+using vpe::base::range_text;
 
 inline constexpr NumberRange kLonRange_deg{-360, 360};
 inline constexpr NumberRange kLatRange_deg{-90, 90};
@@ -31,12 +31,6 @@ inline constexpr NumberRange kVolumeSizeRange_m{0.01, 1e6};
 inline constexpr NumberRange kLeanRange_m{0, 1e6};
 inline constexpr NumberRange kOpticalDepthRange{0, 100, true};
 inline constexpr NumberRange kChannelRange{0, 255};
-
-// Returns true for a finite number in the range.
-bool is_within(double value, const NumberRange& range);
-
-// Returns "a number in [-90, 90]".
-std::string range_text(const NumberRange& range);
 
 // Returns what is wrong with a name, or with the path of a model file; "" if nothing is.
 std::string problem_of_name(std::string_view name);

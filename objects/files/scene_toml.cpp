@@ -7,13 +7,14 @@
 
 #include "objects/files/scene_file.h"
 #include "objects/files/scene_limits.h"
-#include "objects/files/toml_table.h"
 #include "vpe/base/quote.h"
-#include "vpe/base/toml_fault.h"
+#include "vpe/base/toml_table.h"
 
 namespace objects {
 
 namespace {
+
+using vpe::base::TomlTable;
 
 class SceneTomlReader {
  public:
@@ -73,7 +74,7 @@ class SceneTomlReader {
     formula.lean_m = table.number("lean_m", kLeanRange_m, formula.lean_m);
     if (formula.kind == VolumeKind::kCloud) formula.colour = {225, 220, 215, 255};
     if (table.has("colour")) {
-      const toml::array& parts = parts_of(table, table.at("colour"), "colour", 3, 3, "[red, green, blue]");
+      const toml::array& parts = table.list_of(table.at("colour"), "colour", 3, 3, "[red, green, blue]");
       const auto channel = [&](std::size_t n) {
         return static_cast<std::uint8_t>(std::lround(table.number_of(parts[n], "colour", kChannelRange)));
       };
@@ -131,7 +132,7 @@ class SceneTomlReader {
     if (all.size() > kMostInstances) table.fail(all, too_many_instances());
     object.places.reserve(all.size());
     for (const toml::node& node : all) {
-      const toml::array& parts = parts_of(table, node, "at", 2, 3, "[lon, lat] or [lon, lat, heading]");
+      const toml::array& parts = table.list_of(node, "at", 2, 3, "[lon, lat] or [lon, lat, heading]");
       Placing placing = like;
       placing.place = place_of(table, parts, 0);
       if (parts.size() == 3) placing.heading_deg = table.number_of(parts[2], "heading", kAngleRange_deg);
@@ -154,7 +155,7 @@ class SceneTomlReader {
     }
     read_distribution(table, scatter);
     const toml::node& node = table.at("diameter_m");
-    const toml::array& diameters = parts_of(table, node, "diameter_m", 2, 2, "[least, most]");
+    const toml::array& diameters = table.list_of(node, "diameter_m", 2, 2, "[least, most]");
     scatter.least_diameter_m = table.number_of(diameters[0], "diameter_m", kDiameterRange_m);
     scatter.most_diameter_m = table.number_of(diameters[1], "diameter_m", kDiameterRange_m);
     if (scatter.most_diameter_m < scatter.least_diameter_m)
@@ -175,7 +176,7 @@ class SceneTomlReader {
                            "3 to " + std::to_string(kMostPolygonCorners) + " corners [lon, lat]");
     }
     for (const toml::node& corner : corners)
-      scatter.polygon.push_back(place_of(table, parts_of(table, corner, "polygon", 2, 2, "[lon, lat]"), 0));
+      scatter.polygon.push_back(place_of(table, table.list_of(corner, "polygon", 2, 2, "[lon, lat]"), 0));
   }
 
   static void read_distribution(const TomlTable& table, ScatterEntry& scatter) {
@@ -201,7 +202,7 @@ class SceneTomlReader {
     }
     constexpr std::string_view kForm = "[seconds, lon, lat], then heading and height if wanted";
     for (const toml::node& node : table.list("points", kForm)) {
-      const toml::array& parts = parts_of(table, node, "points", 3, 5, kForm);
+      const toml::array& parts = table.list_of(node, "points", 3, 5, kForm);
       PathPoint point{table.number_of(parts[0], "time", kTimeRange_s), place_of(table, parts, 1)};
       const bool is_along_way = parts.size() > 4 && parts[3].value<std::string>() == "way";
       if (parts.size() > 3 && !is_along_way)
@@ -221,14 +222,6 @@ class SceneTomlReader {
 
   static std::string name_of(const TomlTable& table) {
     return table.has("name") ? table.text("name", problem_of_name) : "";
-  }
-
-  static const toml::array& parts_of(const TomlTable& table, const toml::node& node, std::string_view what,
-                                     std::size_t least, std::size_t most, std::string_view form) {
-    const toml::array* parts = node.as_array();
-    if (parts == nullptr || parts->size() < least || parts->size() > most)
-      table.fail_expecting(node, what, std::string(form));
-    return *parts;
   }
 
   static mars::LonLat place_of(const TomlTable& table, const toml::array& parts, std::size_t first) {
@@ -261,16 +254,7 @@ class SceneTomlReader {
 SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path) {
   const std::string problem = problem_of_size(text);
   if (!problem.empty()) throw std::runtime_error(path.string() + ":1: " + problem);
-  if (const vpe::base::TomlFault fault = vpe::base::hostile_toml(text); fault.line != 0)
-    throw std::runtime_error(path.string() + ":" + std::to_string(fault.line) + ": " + std::string(fault.what));
-  toml::table root;
-  try {
-    root = toml::parse(text, path.string());
-  } catch (const toml::parse_error& e) {
-    throw std::runtime_error(path.string() + ":" + std::to_string(e.source().begin.line) +
-                             ": not TOML: " + std::string(e.description()));
-  }
-  return SceneTomlReader(path).read(root);
+  return SceneTomlReader(path).read(vpe::base::parse_toml(text, path.string()));
 }
 
 }  // namespace objects

@@ -10,7 +10,7 @@
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/base/quote.h"
-#include "vpe/base/toml_fault.h"
+#include "vpe/base/toml_table.h"
 
 namespace relief {
 
@@ -155,16 +155,7 @@ std::vector<ReliefSpec> parse_relief_toml(std::string_view text, const std::file
     throw std::runtime_error(file + ":1: expected at most " + std::to_string(kMostReliefFileBytes >> 20U) +
                              " MiB");
   }
-  if (const vpe::base::TomlFault fault = vpe::base::hostile_toml(text); fault.line != 0)
-    throw std::runtime_error(file + ":" + std::to_string(fault.line) + ": " + std::string(fault.what));
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& e) {
-    throw std::runtime_error(file + ":" + std::to_string(e.source().begin.line) +
-                             ": not TOML: " + std::string(e.description()));
-  }
-  return ReliefTomlReader(path).read(root);
+  return ReliefTomlReader(path).read(vpe::base::parse_toml(text, file));
 }
 
 std::vector<ReliefSpec> read_relief_file(const std::filesystem::path& path) {

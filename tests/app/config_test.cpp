@@ -4,6 +4,13 @@
 namespace app_test {
 namespace {
 
+// Returns a key of many parts: the library makes tables in tables of it, and their destructors exhaust the stack.
+std::string many_parts(int count) {
+  std::string text = "a";
+  for (int n = 1; n < count; ++n) text += ".a";
+  return text + " = 1\n";
+}
+
 class Config : public AppTest {
  protected:
   // Runs a query with this file: whether --json took effect shows which options were read.
@@ -67,6 +74,7 @@ TEST_F(Config, Errors) {
   expect_error("json = 3\n", {"c.toml:1", "json", "true or false"});
   expect_error("memory = 1979-05-27\n", {"c.toml:1", "memory", "expected"});
   expect_error("memory = = 3 [[\n", {"c.toml:1", "not TOML"});
+  expect_error(many_parts(200'000), {"c.toml:1", "fewer dots"});
   expect_error("config = 'd.toml'\n", {"c.toml:1", "--config"});
   expect_failure({"query", "x.vpe", "1,2", "--config", "none.toml"}, 2,
                  {"none.toml", "configuration", "No such file", "check the name"});

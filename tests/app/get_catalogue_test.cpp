@@ -87,6 +87,7 @@ TEST(GetCatalogue, MistakesAreToldWithFileAndLine) {
   EXPECT_EQ(problem_of(text_with("", "", kPlain)), "");
   const std::vector<std::pair<std::string, std::string>> bad{
       {"[[product]\n", "c.toml:1: not TOML"},
+      {"a.a.a.a.a.a.a.a.a.a.a.a = 1\n", "c.toml:1: expected keys with fewer dots"},
       {"", "has no [[product]]"},
       {"colour = 1\n" + text_with("", "", kPlain), "c.toml:1: unknown key 'colour' in the catalogue"},
       {text_with("datun = \"x\"", "", kPlain), "c.toml:10: unknown key 'datun' in [[product]]"},

@@ -113,6 +113,9 @@ TEST(KeyFile, RefusesValuesOfOtherKinds) {
                           "one.size = 1 \xc3\xb6", "\xef\xbf\xbd"}) {
     EXPECT_EQ(why(bad).find("F.toml:1: not TOML: "), 0U) << bad << "\n" << why(bad);
   }
+  std::string many_parts = "one";
+  for (int n = 0; n < 200'000; ++n) many_parts += ".a";
+  EXPECT_EQ(why(many_parts + " = 1").find("F.toml:1: expected keys with fewer dots"), 0U);
   EXPECT_LT(why("two.fruit = \"" + std::string(10'000, 'a') + "\"").size(), 200U);
 }
 

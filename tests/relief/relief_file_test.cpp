@@ -138,9 +138,10 @@ TEST(ReliefFile, NamesAreUnique) {
 
 TEST(ReliefFile, RefusesWhatTheLibraryDoesNotSurvive) {
   EXPECT_EQ(error_of("version = 1\na.b.c.d.e.f.g.h.i.j.k = 1\n"),
-            "a.relief.toml:2: expected keys with fewer dots");
+            "a.relief.toml:2: expected keys with fewer dots, found \"a.b.c.d.e.f.g.h.i.j.k = 1\"");
   EXPECT_EQ(error_of("version = 1979-05-27\n"),
-            "a.relief.toml:1: expected a number, a text, a list or true or false, not a date or time");
+            "a.relief.toml:1: expected a number, a text, a list or true or false, not a date or time, found "
+            "\"version = 1979-05-27\"");
   EXPECT_NE(error_of("version = \n").find("a.relief.toml:1: not TOML"), std::string::npos);
   EXPECT_EQ(vpe::base::hostile_toml("a = 1\n").line, 0U);
   EXPECT_EQ(vpe::base::hostile_toml("a = 1\nb = ]\n").line, 2U);

@@ -28,9 +28,26 @@ bool is_table_name(std::string_view line) {
   return c < 0x80 && (std::isalnum(c) != 0 || std::string_view("_-\"']").find(line.front()) != line.npos);
 }
 
+// Returns the place behind a text in three quotation marks that begins here, or the end of all.
+std::size_t end_of_long_text(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string marks(3, quote);
+  for (std::size_t n = begin + 3; n < text.size(); ++n) {
+    if (text[n] == '\\' && quote == '"') {
+      ++n;
+    } else if (text.substr(n, 3) == marks) {
+      // One or two more belong to the text.
+      n += 3;
+      while (n < text.size() && text[n] == quote) ++n;
+      return n;
+    }
+  }
+  return text.size();
+}
+
 }  // namespace
 
-TomlFault hostile_toml(std::string_view text) {
+TomlFault hostile_toml(std::string_view text, bool has_long_texts) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t line = 1;
   int dots = 0;
@@ -45,8 +62,13 @@ TomlFault hostile_toml(std::string_view text) {
       dots = 0;
       quote = 0;
       if (open.empty() && !is_table_name(text.substr(n + 1))) return {line, no_name.what};
-    } else if ((c == '"' || c == '\'') && (text.substr(n, 3) == R"(""")" || text.substr(n, 3) == "'''")) {
-      return {line, "expected a text on one line"};
+    } else if ((quote == 0 || !has_long_texts) && (c == '"' || c == '\'') &&
+               (text.substr(n, 3) == R"(""")" || text.substr(n, 3) == "'''")) {
+      if (!has_long_texts) return {line, "expected a text on one line", true};
+      const std::size_t end = end_of_long_text(text, n);
+      line += static_cast<std::size_t>(std::count(text.begin() + static_cast<std::ptrdiff_t>(n),
+                                                  text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+      n = end - 1;
     } else if (quote != 0) {
       if (c == quote) quote = 0;
       if (c == '\\' && quote == '"' && text.substr(n + 1, 1) != "\n") ++n;
@@ -60,9 +82,9 @@ TomlFault hostile_toml(std::string_view text) {
     } else if (static_cast<unsigned char>(c) >= 0x80) {
       return {line, "expected letters of ASCII outside of texts and comments"};
     } else if (c == ':' || (c == '-' && n > 0 && std::isdigit(static_cast<unsigned char>(text[n - 1])) != 0)) {
-      return {line, "expected a number, a text, a list or true or false, not a date or time"};
+      return {line, "expected a number, a text, a list or true or false, not a date or time", true};
     } else if (c == '.') {
-      if (++dots > kMostDots) return {line, "expected keys with fewer dots"};
+      if (++dots > kMostDots) return {line, "expected keys with fewer dots", true};
     } else if (c == ',' || c == '=' || c == '[' || c == ']' || c == '{' || c == '}') {
       dots = 0;
       if (c == '[' || c == '{') {

@@ -248,6 +248,10 @@ TEST(ProjectFile, FaultsHaveTheirLines) {
   EXPECT_NE(errors("format = 2\n").find("p.vpeproj:1: expected format = 1, found \"2\"; a newer vpe"),
             std::string::npos);
   EXPECT_NE(errors("format = 1\nplanet = \"a\n").find("p.vpeproj:2: not TOML"), std::string::npos);
+  std::string many_parts = "view";
+  for (int n = 0; n < 200'000; ++n) many_parts += ".a";
+  EXPECT_EQ(errors("format = 1\n" + many_parts + " = 1\n").find("p.vpeproj:2: expected keys with fewer dots"),
+            0U);
   EXPECT_NE(errors("format = 1\n\nplanets = 3\n")
                 .find("p.vpeproj:3: unknown key \"planets\"; keys of a project are format, planet"),
             std::string::npos);

@@ -9,11 +9,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "vpe/app/cli/command_list.h"
 #include "vpe/app/cli/former_options.h"
 #include "vpe/base/number.h"
+#include "vpe/base/toml_table.h"
 #include "vpe/base/user_folders.h"
 
 namespace vpe::app {
@@ -60,11 +62,11 @@ class ConfigFile {
     if (!in || (in.peek(), in.bad())) {
       throw UsageError(path_ + ": cannot read the configuration: " + std::strerror(errno) + "; check the name");
     }
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
     try {
-      return toml::parse(in, path_);
-    } catch (const toml::parse_error& e) {
-      throw UsageError(path_ + ":" + std::to_string(e.source().begin.line) +
-                       ": not TOML: " + std::string(e.description()));
+      return base::parse_toml(text, path_);
+    } catch (const std::runtime_error& e) {
+      throw UsageError(e.what());
     }
   }
 

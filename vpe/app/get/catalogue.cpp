@@ -11,6 +11,7 @@
 #include "vpe/app/get/catalogue_text.h"
 #include "vpe/app/get/product_files.h"
 #include "vpe/base/file.h"
+#include "vpe/base/toml_table.h"
 
 namespace vpe::app {
 
@@ -27,13 +28,7 @@ class CatalogueReader {
   explicit CatalogueReader(std::string name) : name_(std::move(name)) {}
 
   Catalogue read(std::string_view text) {
-    toml::table root;
-    try {
-      root = toml::parse(text, name_);
-    } catch (const toml::parse_error& e) {
-      throw std::runtime_error(name_ + ":" + std::to_string(e.source().begin.line) +
-                               ": not TOML: " + std::string(e.description()));
-    }
+    const toml::table root = base::parse_toml(text, name_);
     require_keys(root, {"product"}, "the catalogue");
     Catalogue catalogue;
     for (const toml::table* table : tables(root, "product")) {

@@ -7,10 +7,12 @@
 #include <functional>
 #include <initializer_list>
 #include <sstream>
+#include <stdexcept>
 #include <system_error>
 
 #include "vpe/base/number.h"
 #include "vpe/base/quote.h"
+#include "vpe/base/toml_table.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
 #include "vpe/explore/drawing/project.h"
@@ -55,10 +57,9 @@ class ProjectReader {
   void read(std::string_view text) {
     toml::table top;
     try {
-      top = toml::parse(text, file_.string());
-    } catch (const toml::parse_error& e) {
-      out_.errors.push_back(file_.string() + ":" + std::to_string(e.source().begin.line) +
-                            ": not TOML: " + std::string(e.description()));
+      top = base::parse_toml(text, file_.string(), /*has_long_texts=*/true);
+    } catch (const std::runtime_error& e) {
+      out_.errors.emplace_back(e.what());
       return;
     }
     const toml::node* format = top.get("format");

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "vpe/base/number.h"
+#include "vpe/base/toml_table.h"
 #include "vpe/core/registry/former_names.h"
 #include "vpe/explore/files/toml_text.h"
 
@@ -93,10 +95,9 @@ class Reader {
   void read(std::string_view text) const {
     toml::table top;
     try {
-      top = toml::parse(text, file_);
-    } catch (const toml::parse_error& e) {
-      throw KeyFileError(file_ + ":" + std::to_string(e.source().begin.line) +
-                         ": not TOML: " + std::string(e.description()) + "; correct it, or remove the file");
+      top = base::parse_toml(text, file_);
+    } catch (const std::runtime_error& e) {
+      throw KeyFileError(std::string(e.what()) + "; correct it, or remove the file");
     }
     for (const auto& [name, node] : top) {
       const std::vector<std::string_view> known = keys_in(name.str());

@@ -1,20 +1,21 @@
-#include "objects/files/toml_table.h"
+#include "vpe/base/toml_table.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "vpe/base/number.h"
 #include "vpe/base/quote.h"
+#include "vpe/base/toml_fault.h"
 
-namespace objects {
+namespace vpe::base {
 
 namespace {
 
 std::string toml_found(const toml::node& node) {
-  if (const auto* value = node.as_floating_point()) return vpe::base::format_number(value->get());
+  if (const auto* value = node.as_floating_point()) return format_number(value->get());
   if (const auto* value = node.as_integer()) return std::to_string(value->get());
   if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
-  if (const auto* value = node.as_string()) return vpe::base::quote_text(value->get());
+  if (const auto* value = node.as_string()) return quote_text(value->get());
   if (const auto* value = node.as_array()) return "a list of " + std::to_string(value->size());
   return "a table";
 }
@@ -28,7 +29,28 @@ std::string words_text(std::initializer_list<std::string_view> words, std::strin
   return all;
 }
 
+std::string_view line_of(std::string_view text, std::size_t number) {
+  for (std::size_t n = 1; n < number; ++n) {
+    const std::size_t end = text.find('\n');
+    if (end == text.npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
 }  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& file, bool has_long_texts) {
+  if (const TomlFault fault = hostile_toml(text, has_long_texts); fault.line != 0)
+    throw std::runtime_error(file + ":" + std::to_string(fault.line) + (fault.is_toml ? ": " : ": not TOML: ") +
+                             std::string(fault.what) + ", found " + quote_text(line_of(text, fault.line)));
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& e) {
+    throw std::runtime_error(file + ":" + std::to_string(e.source().begin.line) +
+                             ": not TOML: " + std::string(e.description()));
+  }
+}
 
 std::string TomlTable::where() const {
   return file_ + ":" + std::to_string(std::max<std::uint32_t>(1, table_.source().begin.line));
@@ -47,8 +69,8 @@ void TomlTable::fail_expecting(const toml::node& node, std::string_view what,
 void TomlTable::require_known(std::initializer_list<std::string_view> keys) const {
   for (const auto& [key, node] : table_) {
     if (std::ranges::find(keys, key.str()) == keys.end())
-      fail(node, "unknown key " + vpe::base::quote_text(key.str()) + " in " + std::string(title_) +
-                     "; keys are " + words_text(keys, " and "));
+      fail(node, "unknown key " + quote_text(key.str()) + " in " + std::string(title_) + "; keys are " +
+                     words_text(keys, " and "));
   }
 }
 
@@ -110,4 +132,12 @@ const toml::array& TomlTable::list(std::string_view key, std::string_view of) co
   return *value;
 }
 
-}  // namespace objects
+const toml::array& TomlTable::list_of(const toml::node& node, std::string_view what, std::size_t least,
+                                      std::size_t most, std::string_view form) const {
+  const toml::array* parts = node.as_array();
+  if (parts == nullptr || parts->size() < least || parts->size() > most)
+    fail_expecting(node, what, std::string(form));
+  return *parts;
+}
+
+}  // namespace vpe::base

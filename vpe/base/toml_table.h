@@ -10,6 +10,7 @@
 
 #include <toml++/toml.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -17,9 +18,13 @@
 #include <utility>
 #include <vector>
 
-#include "objects/files/scene_limits.h"
+#include "vpe/base/number_range.h"
 
-namespace objects {
+namespace vpe::base {
+
+// Parses a text of the user's. `file` is its name in messages. Throws std::runtime_error "FILE:LINE: what" for a text that
+// is not TOML, or that hostile_toml() refuses.
+toml::table parse_toml(std::string_view text, const std::string& file, bool has_long_texts = false);
 
 class TomlTable {
  public:
@@ -49,6 +54,10 @@ class TomlTable {
   // Returns an entry of a list as a number.
   double number_of(const toml::node& node, std::string_view what, const NumberRange& range) const;
 
+  // Returns the entries of a list of `least` to `most`, which messages call `form`, such as "[lon, lat]".
+  const toml::array& list_of(const toml::node& node, std::string_view what, std::size_t least, std::size_t most,
+                             std::string_view form) const;
+
   [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
   [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
   [[noreturn]] void fail_expecting(const toml::node& node, std::string_view what,
@@ -62,4 +71,4 @@ class TomlTable {
   const std::string& file_;
 };
 
-}  // namespace objects
+}  // namespace vpe::base
