@@ -143,6 +143,11 @@ bool NodataValues::has(double stored) const {
          std::find(values.begin(), values.end(), stored) != values.end();
 }
 
+bool stores_signed_bytes(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
 NodataValues nodata_values(GDALDataset& dataset, const std::optional<PdsLabel>& label) {
   NodataValues nodata;
   if (label) nodata.values = pds_nodata(*label);

@@ -10,6 +10,7 @@
 #include "mars/raster/pds_label.h"
 
 class GDALDataset;
+class GDALRasterBand;
 
 namespace mars {
 
@@ -25,6 +26,9 @@ struct NodataValues {
 // Returns the nodata values of a raster. ISIS cubes: NULL, LRS, LIS, HIS and HRS of the stored type (8 bits: 0
 // and 255), of which GDAL reports NULL only. PDS labels: all values that they declare missing.
 NodataValues nodata_values(GDALDataset& dataset, const std::optional<PdsLabel>& label);
+
+// Returns true if the stored bytes of a band are signed (PIXELTYPE=SIGNEDBYTE): GDAL before 3.7 reads them as unsigned.
+bool stores_signed_bytes(GDALRasterBand& band);
 
 // Returns corrections of the georeference that GDAL reads from a label:
 // - ISIS3: see isis_map().

@@ -51,11 +51,6 @@ Coverage coverage_of(GDALDataset& dataset, const PixelWindow& w) {
   return !has_data ? Coverage::kNone : has_gaps ? Coverage::kSome : Coverage::kAll;
 }
 
-bool stores_signed_bytes(GDALRasterBand& band) {
-  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
-  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
-}
-
 // Throws if a raw file is too short. GDAL reads zeros beyond the end of some, as if they were sparse.
 void check_raw_size(const std::string& path, GDALDataset& dataset) {
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "mars/raster/elevation/band_format.h"
 #include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_overviews.h"
 #include "mars/raster/gdal_raster.h"
@@ -21,65 +22,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestHeight_m = 1e6;  // larger values are distances from the planet's centre
-
-struct BandFormat {
-  GDALDataType type = GDT_Unknown;
-  std::optional<double> nodata_value;
-  double scale = 1;   // metres per unit of the stored values
-  double offset = 0;  // metres at stored value 0
-  bool fits_float = false;
-  NodataValues special_values;  // other stored values that mean nodata
-  bool masked = false;          // a mask or alpha band marks pixels with data
-};
-
-double metres_per_unit(const std::string& unit) {
-  CPLString lower(unit);
-  lower.tolower();
-  if (lower == "km" || lower == "kilometer" || lower == "kilometre" || lower == "kilometers") return 1000;
-  if (lower == "cm" || lower == "centimeter" || lower == "centimetre") return 0.01;
-  if (lower == "ft" || lower == "foot" || lower == "feet") return 0.3048;
-  return 1;
-}
-
-BandFormat band_format(const GdalRaster& raster) {
-  const GdalScope scope;
-  const auto dataset = raster.acquire();
-  GDALRasterBand* band = dataset->GetRasterBand(1);
-  const GDALColorInterp colour = band->GetColorInterpretation();
-  if (band->GetColorTable() != nullptr || colour == GCI_RedBand) {
-    throw source_error(raster.path(), "is a colour image, not elevation", "", "give it as an image (--image)");
-  }
-  BandFormat format;
-  format.type = band->GetRasterDataType();
-  format.fits_float = format.type == GDT_Byte || format.type == GDT_Int16 || format.type == GDT_UInt16 ||
-                      format.type == GDT_Float32;
-  int has_nodata = 0;
-  if (format.type == GDT_Int64) {
-    const auto value = static_cast<double>(band->GetNoDataValueAsInt64(&has_nodata));
-    if (has_nodata != 0) format.nodata_value = value;
-  } else if (format.type == GDT_UInt64) {
-    const auto value = static_cast<double>(band->GetNoDataValueAsUInt64(&has_nodata));
-    if (has_nodata != 0) format.nodata_value = value;
-  } else {
-    const double value = band->GetNoDataValue(&has_nodata);
-    if (has_nodata != 0) format.nodata_value = value;
-  }
-  // The nodata value of signed bytes may be stated as signed or as stored.
-  if (raster.is_signed_byte(1) && format.nodata_value && *format.nodata_value > 127)
-    *format.nodata_value -= 256;
-  format.special_values = raster.nodata();
-  // A mask derived from the nodata value adds nothing.
-  const int mask = band->GetMaskFlags();
-  format.masked = (mask & (GMF_ALL_VALID | GMF_NODATA)) == 0;
-  const double unit_m = metres_per_unit(band->GetUnitType());
-  format.scale = band->GetScale() * unit_m;
-  format.offset = band->GetOffset() * unit_m;
-  if (!std::isfinite(format.scale) || format.scale == 0 || !std::isfinite(format.offset)) {
-    throw source_error(raster.path(), "has a scale or offset that is not a usable number", "",
-                       "set it with gdal_edit.py -scale -offset");
-  }
-  return format;
-}
 
 template <class T>
 struct HeightTile {
