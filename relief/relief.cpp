@@ -126,20 +126,26 @@ std::string relief_title(const ReliefSpec& spec, std::size_t number) {
 }
 
 Relief place(std::vector<ReliefSpec> specs, double radius_m, const GroundHeight& ground) {
+  return place(
+      std::move(specs), [radius_m](const glm::dvec3&) { return radius_m; }, ground);
+}
+
+Relief place(std::vector<ReliefSpec> specs, const BaseRadius& radius_m, const GroundHeight& ground) {
   if (specs.size() > kMostReliefs) {
     throw std::runtime_error(std::to_string(specs.size()) + " reliefs; expected at most " +
                              std::to_string(kMostReliefs));
   }
-  if (!(radius_m > 0 && std::isfinite(radius_m)))
-    throw std::runtime_error("reliefs on a planet without a radius; expected a finite one above 0");
   Relief relief;
   std::vector<mars::Cap> caps;
   for (ReliefSpec& spec : specs) {
     const std::string title = relief_title(spec, relief.placed_.size() + 1);
     if (const std::string problem = problem_of(spec); !problem.empty())
       throw std::runtime_error(title + ": " + problem);
+    const double own_radius_m = radius_m(mars::direction(spec.place));
+    if (!(own_radius_m > 0 && std::isfinite(own_radius_m)))
+      throw std::runtime_error("reliefs on a planet without a radius; expected a finite one above 0");
     try {
-      relief.placed_.emplace_back(std::move(spec), radius_m);
+      relief.placed_.emplace_back(std::move(spec), own_radius_m);
     } catch (const std::invalid_argument& e) {
       throw std::runtime_error(title + ": " + e.what());
     }

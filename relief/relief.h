@@ -25,6 +25,9 @@ inline constexpr std::size_t kMostReliefs = 100'000;
 // be a pure function.
 using GroundHeight = std::function<double(const glm::dvec3& direction)>;
 
+// Returns the radius of the base at a unit direction in metres. It must be a pure function.
+using BaseRadius = std::function<double(const glm::dvec3& direction)>;
+
 // Immutable: any number of threads may use it, and all results are pure functions of the arguments. The cost of a place
 // grows with the number of reliefs that reach it, and with the logarithm of the number of all.
 class Relief {
@@ -53,7 +56,7 @@ class Relief {
   double spacing_m(const mars::Cap& cap) const;
 
  private:
-  friend Relief place(std::vector<ReliefSpec> specs, double radius_m, const GroundHeight& ground);
+  friend Relief place(std::vector<ReliefSpec> specs, const BaseRadius& radius_m, const GroundHeight& ground);
 
   std::vector<PlacedRelief> placed_;
   CapTree tree_;
@@ -64,6 +67,10 @@ class Relief {
 // std::runtime_error with the name of the relief for one that has a problem_of(), reaches too far, or needs ground where
 // there is none, and for more than kMostReliefs.
 Relief place(std::vector<ReliefSpec> specs, double radius_m, const GroundHeight& ground);
+
+// Places reliefs on another body likewise. Each lies on the sphere with the body's radius at its place: lengths are true there
+// as far as the body's surface has the same radius and is across the direction from the centre.
+Relief place(std::vector<ReliefSpec> specs, const BaseRadius& radius_m, const GroundHeight& ground);
 
 // Returns the name of a relief in messages: 'relief 3 "pad"' or 'relief 3'. Numbers begin with 1.
 std::string relief_title(const ReliefSpec& spec, std::size_t number);

@@ -359,5 +359,23 @@ TEST(Reliefs, NoneChangeNothing) {
   none.change(std::span<const glm::dvec3>(), std::span<const double>(), std::span<ReliefChange>());
 }
 
+// Reliefs on a body that is no sphere lie on the sphere of its radius at their place.
+TEST(Reliefs, SizesAreThoseOfTheBodysRadius) {
+  const auto radius_m = [](const glm::dvec3& d) { return d.z > 0.5 ? 500.0 : 2000.0; };
+  const auto flat = [](const glm::dvec3&) { return 0.0; };
+  const auto specs = [] {
+    return std::vector<ReliefSpec>{parse_relief_line("kind=crater lon=0 lat=0 radius=40"),
+                                   parse_relief_line("kind=crater lon=0 lat=90 radius=40")};
+  };
+  const Relief relief = place(specs(), radius_m, flat);
+  ASSERT_EQ(relief.placed().size(), 2U);
+  EXPECT_NEAR(relief.placed()[1].cap().radius_rad / relief.placed()[0].cap().radius_rad, 4, 1e-9);
+  EXPECT_NEAR(relief.height_m({1, 0, 0}, 0), relief.height_m({0, 0, 1}, 0), 1e-9);
+  EXPECT_LT(relief.height_m({1, 0, 0}, 0), -5);
+  EXPECT_THROW(place(
+                   specs(), [](const glm::dvec3&) { return kNan; }, flat),
+               std::runtime_error);
+}
+
 }  // namespace
 }  // namespace relief
