@@ -26,6 +26,18 @@ TEST(Papers, VyatkinsTableIsThePapers) {
   EXPECT_EQ(times.base_size, 64);
 }
 
+TEST(Papers, WansTerrainTableIsThePapers) {
+  const double expected[][3] = {
+      {1, 0.92, 0.65}, {4, 0.28, 0.21}, {8, 0.15, 0.11}, {12, 0.11, 0.08}, {16, 0.09, 0.06}};
+  ASSERT_EQ(kWan1999Terrain.size(), std::size(expected));
+  for (std::size_t n = 0; n < kWan1999Terrain.size(); ++n) {
+    EXPECT_EQ(kWan1999Terrain[n].processors, expected[n][0]);
+    EXPECT_EQ(kWan1999Terrain[n].accurate_s, expected[n][1]);
+    EXPECT_EQ(kWan1999Terrain[n].approximate_s, expected[n][2]);
+  }
+  EXPECT_NEAR(kWan1999Times.conventional_s / kWan1999Terrain[0].accurate_s, 7.3, 0.05);
+}
+
 // Rounds of which the second was disturbed: ratios are of one round, and then their median.
 TEST(Papers, RatiosAreWithinRounds) {
   const PublishedTimes published{"P", "M", "n", "sizes", {{2, 30, ""}, {1, 20, ""}}, 1};

@@ -35,6 +35,24 @@ struct PublishedReprojection {
 };
 inline constexpr PublishedReprojection kWan2000Figure8;
 
+// Wan, Qu, Kaufman (1999), Table 1: times of an image of 500 x 400 pixels on a number of processors (194 MHz), seconds; terrain
+// of 512 x 512 x 64 voxels with a photograph, pitch -30 degrees, samples 0.6 voxels apart.
+struct PublishedTerrain {
+  int processors = 0;
+  double accurate_s = 0;     // samples of the volume
+  double approximate_s = 0;  // boundary cells alone
+};
+inline constexpr std::array<PublishedTerrain, 5> kWan1999Terrain{
+    {{1, 0.92, 0.65}, {4, 0.28, 0.21}, {8, 0.15, 0.11}, {12, 0.11, 0.08}, {16, 0.09, 0.06}}};
+
+// Section 7 of the same paper, on one processor.
+struct PublishedTerrainTimes {
+  double conventional_s = 6.71;  // every ray from the camera
+  double roll_45_s = 1.04;       // accurate, with a roll of 45 degrees
+  double roll_mean_s = 0.96;     // mean of 10 rolls from 0 to 45 degrees
+};
+inline constexpr PublishedTerrainTimes kWan1999Times;
+
 // Holds a published table with one time for each size of something.
 struct PublishedTimes {
   std::string paper;

@@ -223,6 +223,27 @@ TEST_F(Report, PapersPutBothSideBySide) {
   EXPECT_LT(difference["lit"].get<double>(), 0.031);
   EXPECT_GT(difference["lit"].get<double>(), 0);
 
+  const json& terrain = report["terrain-table-1"];
+  expect_csv("out/terrain-table-1.csv", terrain);
+  ASSERT_GE(terrain["rows"].size(), 5U);
+  const json one_thread = row(terrain, {{"processors", 1}});
+  EXPECT_EQ(one_thread["published_accurate_s"], 0.92);
+  EXPECT_EQ(row(terrain, {{"processors", 12}})["published_approximate_s"], 0.08);
+  for (const char* name : {"accurate_s", "approximate_s", "approximate_to_accurate", "ratio_of_ratios"})
+    EXPECT_GT(one_thread[name].get<double>(), 0) << name;
+  const json& ways = report["terrain-section-7"];
+  expect_csv("out/terrain-section-7.csv", ways);
+  EXPECT_EQ(ways["rows"].size(), 8U);
+  EXPECT_LE(row(ways, {{"quantity", "boundary array : volume, bytes"}})["here"].get<double>(), 1.0 / 32);
+  EXPECT_LT(row(ways, {{"quantity", "share of pixels with other hits than rays from the camera"}})["here"]
+                .get<double>(),
+            0.02);
+  for (const char* name : {"terrain-figure-6", "terrain-figure-7", "terrain-difference", "terrain-roll"}) {
+    const vpe::core::RgbImage image = vpe::core::read_image(dir_ / "out" / (std::string(name) + ".png"));
+    EXPECT_EQ(image.width, 500);
+    EXPECT_EQ(image.height, 400);
+  }
+
   const std::vector<std::pair<int, int>> published{{1024, 59}, {512, 58}, {128, 58}, {64, 57}};
   for (const char* name : {"relief-bilinear", "relief-bilinear-half-pixel"}) {
     const json& table = report[name];

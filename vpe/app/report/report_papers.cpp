@@ -14,8 +14,9 @@
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/report/papers_relief.h"
-#include "vpe/app/report/papers_stereo.h"
+#include "vpe/app/report/papers/papers_relief.h"
+#include "vpe/app/report/papers/papers_stereo.h"
+#include "vpe/app/report/papers/papers_terrain.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
 
@@ -62,6 +63,7 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   const InterruptGuard guard;
   const auto planet = open_planet(arguments.planet, common);
   const StereoPaperPlan plan = make_plan(arguments, common, planet);
+  const TerrainPaperPlan terrain_plan{plan.threads, plan.rounds, arguments.brief};
   const ReliefPaperPlan relief_plan{.rounds = plan.rounds, .is_short = arguments.brief};
   ProgressLine line(common.quiet);
   int done = 0;
@@ -70,11 +72,17 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
     line.show("stereo", static_cast<double>(done++) / count_steps(plan));
   });
   done = 0;
+  const TerrainPaper terrain = measure_terrain_paper(terrain_plan, folder, [&] {
+    InterruptGuard::check();
+    line.show("terrain", static_cast<double>(done++) / count_steps(terrain_plan));
+  });
+  done = 0;
   const ReliefPaper relief = measure_relief_paper(relief_plan, folder, [&] {
     InterruptGuard::check();
     line.show("relief", static_cast<double>(done++) / count_steps(relief_plan));
   });
   std::vector<report::Table> tables = stereo.tables;
+  tables.insert(tables.end(), terrain.tables.begin(), terrain.tables.end());
   tables.insert(tables.end(), relief.tables.begin(), relief.tables.end());
 
   report::Page page;
@@ -82,7 +90,7 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   page.paragraphs = report::to_paragraphs(facts);
   page.paragraphs.push_back("Stereo: planet " + planet->path() + ", pose " + arguments.pose + ", " +
                             arguments.size + " pixels.");
-  page.sections = {stereo.section, relief.section};
+  page.sections = {stereo.section, terrain.section, relief.section};
   nlohmann::json json{{"run", report::to_json(facts)}, {"load_after", report::load_now()},
                       {"planet", planet->path()},      {"pose", arguments.pose},
                       {"size", arguments.size},        {"eye_base_m", stereo.eye_base_m}};
@@ -111,8 +119,8 @@ void add_report_papers(CLI::App& report, Common& common) {
   CLI::App* command = add_command(
       report, "papers",
       "Measure what the papers that vpe follows have published, and put both side by side; so "
-      "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, and the table and "
-      "Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
+      "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, Table 1, Figs 6 and 7 and the times "
+      "of section 7 of Wan and others (1999), terrain as a volume, and the table and Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
       common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command
@@ -140,7 +148,7 @@ void add_report_papers(CLI::App& report, Common& common) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--short", arguments->brief,
-                    "Two rounds on one thread, bilinear relief only; under a minute");
+                    "Two rounds on one thread, bilinear relief and 3 rolls only; under a minute");
   add_examples(*command, {{"under a minute", "vpe report papers --short -o papers"},
                           {"images of today's size", "vpe report papers mars.vpe --size 1920x1080 -o papers"}});
   command->callback([arguments, &common] { report_papers(*arguments, common); });

@@ -1,4 +1,4 @@
-#include "vpe/app/report/relief_hills.h"
+#include "vpe/app/report/papers/relief_hills.h"
 
 #include <algorithm>
 #include <cmath>

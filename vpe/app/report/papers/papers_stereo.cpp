@@ -1,4 +1,4 @@
-#include "vpe/app/report/papers_stereo.h"
+#include "vpe/app/report/papers/papers_stereo.h"
 
 #include <algorithm>
 #include <cmath>

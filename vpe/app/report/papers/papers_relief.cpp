@@ -1,9 +1,9 @@
-#include "vpe/app/report/papers_relief.h"
+#include "vpe/app/report/papers/papers_relief.h"
 
 #include <array>
 #include <span>
 
-#include "vpe/app/report/relief_hills.h"
+#include "vpe/app/report/papers/relief_hills.h"
 #include "vpe/base/number.h"
 #include "vpe/report/papers.h"
 #include "vpe/report/processor_time.h"
