@@ -56,7 +56,7 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
   const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
   shading.exaggeration = a.exaggeration;
   shading.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
-  shading.lit = !of_vertices && a.mode != Mode::kUnlit;
+  shading.lit = a.light && !of_vertices && a.mode != Mode::kUnlit;
   shading.colour_source = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? ColourSource::kPlain
                           : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
                                                                              : shown;
@@ -68,6 +68,7 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
     shading.diffuse = a.sun_diffuse;
     shading.shadows = a.shadows;
   }
+  if (shows_image(shading.colour_source)) shading.stretch = {a.image_low, a.image_high, a.image_gamma};
   if (shading.colour_source == ColourSource::kPlain) shading.plain = a.plain_ground;
   if (shows_scale(shading.colour_source) || shows_scale(shading.hue)) shading.scale = std::move(scale);
   return shading;
@@ -144,9 +145,19 @@ std::shared_ptr<const TileHeights> TerrainShader::heights(const lod::TileKey& ke
   });
 }
 
-std::shared_ptr<const ImageTile> TerrainShader::image(const lod::TileKey& key) const {
-  return images_.get({key, planet_->version(key, MadeOf::kImage)}, [&] {
-    auto made = std::make_shared<const ImageTile>(planet_->image(key));
+TerrainShader::ImageKey TerrainShader::key_of(const lod::TileKey& key, const ImageStretch& stretch) const {
+  return {{key, planet_->version(key, MadeOf::kImage)}, stretch};
+}
+
+std::shared_ptr<const ImageTile> TerrainShader::image(const lod::TileKey& key,
+                                                      const ImageStretch& stretch) const {
+  return images_.get(key_of(key, stretch), [&] {
+    ImageTile tile = planet_->image(key);
+    if (stretch != ImageStretch()) {
+      const std::array<std::uint8_t, 256> table = stretch_table(stretch);
+      for (vpe::base::Rgb& texel : tile.texels) texel = {table[texel.r], table[texel.g], table[texel.b]};
+    }
+    auto made = std::make_shared<const ImageTile>(std::move(tile));
     const std::size_t bytes = sizeof(*made) + made->texels.capacity() * sizeof(vpe::base::Rgb);
     return std::pair(std::move(made), bytes);
   });
@@ -166,8 +177,9 @@ std::shared_ptr<const NormalTile> TerrainShader::held_normals(const lod::TileKey
   return normals_.find(normal_key(key, params));
 }
 
-std::shared_ptr<const ImageTile> TerrainShader::held_image(const lod::TileKey& key) const {
-  return images_.find({key, planet_->version(key, MadeOf::kImage)});
+std::shared_ptr<const ImageTile> TerrainShader::held_image(const lod::TileKey& key,
+                                                           const ImageStretch& stretch) const {
+  return images_.find(key_of(key, stretch));
 }
 
 lod::TileKey TerrainShader::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }
@@ -221,17 +233,19 @@ TerrainShader::ImageBlock TerrainShader::image_block(const lod::TileKey& block,
   if (!shows_image(params.colour_source)) return {};
   const auto found = planet_->image_key(block);
   if (!found) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
-  return {image(*found), *found};
+  return {image(*found, params.stretch), *found};
 }
 
-glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const {
+glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint_m, const ImageStretch& stretch,
+                                   Cursor& cursor) const {
   const mars::ChartPoint place = mars::chart_point(direction);
   const int level = level_for(footprint_m, kImageIntervals, planet_->radius_m());
   const auto key = planet_->image_key(lod::tile_at(place, level));
   if (!key) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
-  if (!cursor.image_ || cursor.image_key_ != *key) {
-    cursor.image_ = image(*key);
+  if (!cursor.image_ || cursor.image_key_ != *key || cursor.image_stretch_ != stretch) {
+    cursor.image_ = image(*key, stretch);
     cursor.image_key_ = *key;
+    cursor.image_stretch_ = stretch;
   }
   return bilinear<glm::vec3>(between_lines(place.u, key->level, key->i, kImageIntervals),
                              between_lines(place.v, key->level, key->j, kImageIntervals), kImageSide,
@@ -241,7 +255,7 @@ glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint
 std::optional<glm::dvec3> TerrainShader::nodata_image_at(const glm::dvec3& direction, double footprint_m,
                                                          const ShadingParams& params, Cursor& cursor) const {
   if (!shows_image(params.colour_source)) return std::nullopt;
-  return image_at(direction, footprint_m, cursor);
+  return image_at(direction, footprint_m, params.stretch, cursor);
 }
 
 std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, double footprint_m,
@@ -291,19 +305,20 @@ std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, 
     if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
     if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
       at.sun = sees_sun(middle, lod::nominal_side_m(key.level, radius) / n, params) ? 1.0 : 0.0;
-    if (shows_image(params.colour_source)) at.image = image_at(at.up, footprint_m, cursor);
+    if (shows_image(params.colour_source)) at.image = image_at(at.up, footprint_m, params.stretch, cursor);
     return colour(at, params);
   }
   at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.posts[k].height_m; });
   at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.posts[k].normal; });
   if (!ground.sees_sun.empty())
     at.sun = bilinear<float>(x, y, side, [&](std::size_t k) { return static_cast<float>(ground.sees_sun[k]); });
-  if (params.colour_source == ColourSource::kImage) at.image = image_at(direction, footprint_m, cursor);
+  if (params.colour_source == ColourSource::kImage)
+    at.image = image_at(direction, footprint_m, params.stretch, cursor);
   if (params.colour_source == ColourSource::kImageAtPosts) {
     for (std::size_t b = 0; b < 2; ++b) {
       for (std::size_t a = 0; a < 2; ++a) {
         const float share = (a == 1 ? x.rest : 1.0F - x.rest) * (b == 1 ? y.rest : 1.0F - y.rest);
-        at.image += static_cast<double>(share) * image_at(post(a, b), footprint_m, cursor);
+        at.image += static_cast<double>(share) * image_at(post(a, b), footprint_m, params.stretch, cursor);
       }
     }
   }

@@ -16,6 +16,7 @@
 
 #include "lod/mesh/mesh.h"
 #include "paging/planet/planet_file.h"
+#include "paging/shading/image_stretch.h"
 #include "paging/surface/surface.h"
 #include "vpe/base/lru_cache.h"
 #include "vpe/core/appearance/palette.h"
@@ -45,6 +46,7 @@ bool shows_difference(const ShadingParams& params);
 struct ShadingParams {
   ColourSource colour_source = ColourSource::kElevation;
   ColourSource hue = ColourSource::kPlain;  // not plain: an image is colourised by this
+  ImageStretch stretch;                     // of the image
   bool lit = true;
   bool shadows = false;
   bool flat = false;        // for triangles, not for grids
@@ -147,6 +149,7 @@ class TerrainShader {
     lod::TileKey ground_key_;
     std::shared_ptr<const ImageTile> image_;
     lod::TileKey image_key_;
+    ImageStretch image_stretch_;
   };
 
   // Computes the colour, 0 to 255 and not clamped, of the terrain in a direction: the same definition without
@@ -162,12 +165,12 @@ class TerrainShader {
                                             const ShadingParams& params, Cursor& cursor) const;
 
   // Return the inputs of colours: posts of a tile that the planet has, texels of one that image_key()
-  // returned. Throw PlanetError.
+  // returned, stretched. Throw PlanetError.
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadingParams& params) const;
-  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
+  std::shared_ptr<const ImageTile> image(const lod::TileKey& key, const ImageStretch& stretch) const;
   // Return the same if they are held, else null. Read nothing.
   std::shared_ptr<const NormalTile> held_normals(const lod::TileKey& key, const ShadingParams& params) const;
-  std::shared_ptr<const ImageTile> held_image(const lod::TileKey& key) const;
+  std::shared_ptr<const ImageTile> held_image(const lod::TileKey& key, const ImageStretch& stretch) const;
 
   std::size_t bytes_resident() const;
 
@@ -195,6 +198,19 @@ class TerrainShader {
   struct NormalKeyHash {
     std::size_t operator()(const NormalKey& k) const {
       return TileVersionHash()(k.tile) ^ std::hash<double>()(k.exaggeration + k.sun.x + 3 * k.sun.y);
+    }
+  };
+
+  struct ImageKey {
+    TileVersion tile;
+    ImageStretch stretch;
+    bool operator==(const ImageKey&) const = default;
+  };
+  ImageKey key_of(const lod::TileKey& key, const ImageStretch& stretch) const;
+  struct ImageKeyHash {
+    std::size_t operator()(const ImageKey& k) const {
+      return TileVersionHash()(k.tile) ^
+             std::hash<double>()(k.stretch.low + 3 * k.stretch.high + 7 * k.stretch.gamma);
     }
   };
 
@@ -242,7 +258,8 @@ class TerrainShader {
   ImageBlock image_block(const lod::TileKey& block, const ShadingParams& params) const;
   glm::dvec3 source_colour(ColourSource source, const Ground& at, const ShadingParams& params) const;
   glm::dvec3 colour(const Ground& at, const ShadingParams& params) const;
-  glm::dvec3 image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const;
+  glm::dvec3 image_at(const glm::dvec3& direction, double footprint_m, const ImageStretch& stretch,
+                      Cursor& cursor) const;
   // Returns the heights of the row of posts just across an edge, in this tile's order along it, and their
   // positions.
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
@@ -257,7 +274,7 @@ class TerrainShader {
   std::shared_ptr<const Surface> earlier_;  // of planet_->earlier(); null: none
   mutable vpe::base::LruCache<TileVersion, TileHeights, TileVersionHash> heights_;
   mutable vpe::base::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
-  mutable vpe::base::LruCache<TileVersion, ImageTile, TileVersionHash> images_;
+  mutable vpe::base::LruCache<ImageKey, ImageTile, ImageKeyHash> images_;
   mutable vpe::base::LruCache<TextureKey, KeptTexture, TextureKeyHash> textures_;
 };
 

@@ -63,7 +63,7 @@ TEST(Settings, EachKeyChangesItsOwnValueAlone) {
     } else if (info.type == SettingType::kText) {
       other = other_text(info.key);
     } else {
-      other = base::format_number(info.max);
+      other = base::format_number(info.default_text == base::format_number(info.max) ? info.min : info.max);
     }
     Settings settings;
     ASSERT_EQ(settings.set(info.key, other), "") << info.key;
@@ -111,6 +111,10 @@ TEST(Settings, MapsKeysToTheirMembers) {
   EXPECT_EQ(settings.assign("colourise=on"), "");
   EXPECT_EQ(settings.assign("sun=Ls90,15:00"), "");
   EXPECT_EQ(settings.assign("sun.diffuse=2"), "");
+  EXPECT_EQ(settings.assign("light=off"), "");
+  EXPECT_EQ(settings.assign("image.low=20"), "");
+  EXPECT_EQ(settings.assign("image.high=200"), "");
+  EXPECT_EQ(settings.assign("image.gamma=1.5"), "");
   EXPECT_EQ(settings.assign("shadows=on"), "");
   EXPECT_EQ(settings.assign("gamma=2.2"), "");
   EXPECT_EQ(settings.assign("haze.visibility=50000"), "");
@@ -163,6 +167,10 @@ TEST(Settings, MapsKeysToTheirMembers) {
   wanted.colourise = true;
   wanted.sun = "Ls90,15:00";
   wanted.sun_diffuse = 2;
+  wanted.light = false;
+  wanted.image_low = 20;
+  wanted.image_high = 200;
+  wanted.image_gamma = 1.5;
   wanted.shadows = true;
   wanted.gamma = 2.2;
   wanted.haze_visibility_m = 50000;

@@ -69,13 +69,30 @@ inline std::vector<vpe::core::Appearance> all_appearances() {
       }
     }
   }
+  for (const auto mode : {Mode::kLit, Mode::kTextured}) {
+    for (const auto shading : {Shading::kFlat, Shading::kGouraud}) {
+      vpe::core::Appearance& a = all.emplace_back();
+      a.mode = mode;
+      a.shading = shading;
+      a.light = false;
+      a.colour = Colour::kNone;
+      a.background = vpe::core::Background::kBlack;
+    }
+  }
+  vpe::core::Appearance& stretched = all.emplace_back();
+  stretched.mode = Mode::kTextured;
+  stretched.image_low = 30;
+  stretched.image_high = 180;
+  stretched.image_gamma = 1.6;
+  stretched.background = vpe::core::Background::kBlack;
   return all;
 }
 
 inline std::string name(const vpe::core::Appearance& a) {
   return "mode " + std::to_string(static_cast<int>(a.mode)) + " shading " +
          std::to_string(static_cast<int>(a.shading)) + " colour " + std::to_string(static_cast<int>(a.colour)) +
-         (a.colourise ? " colourised" : "");
+         (a.colourise ? " colourised" : "") + (a.light ? "" : " without light") +
+         (a.image_low > 0 ? " stretched" : "");
 }
 
 // Returns the share of pixels within 2 of the reference in every channel, among those that the reference has.

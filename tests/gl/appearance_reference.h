@@ -93,7 +93,12 @@ struct GroundReference {
         return static_cast<std::size_t>(std::clamp(c, 0.0, double{paging::kImageIntervals}));
       };
       const vpe::base::Rgb c = image_tile_->texels[clamped(b) * (paging::kImageIntervals + 1) + clamped(a)];
-      return glm::dvec3(c.r, c.g, c.b);
+      const auto stretched = [this](double v) {
+        if (appearance.image_low == 0 && appearance.image_high == 255 && appearance.image_gamma == 1) return v;
+        const double share = (v - appearance.image_low) / (appearance.image_high - appearance.image_low);
+        return std::floor(255 * std::pow(std::clamp(share, 0.0, 1.0), 1 / appearance.image_gamma) + 0.5);
+      };
+      return glm::dvec3(stretched(c.r), stretched(c.g), stretched(c.b));
     };
     const double i = std::floor(x), j = std::floor(y);
     return glm::mix(glm::mix(get(i, j), get(i + 1, j), x - i),
@@ -169,7 +174,7 @@ struct GroundReference {
     if (appearance.mode == Mode::kTextured)
       c = appearance.colourise && appearance.colour != Colour::kNone ? colourised(image_rgb, shown())
                                                                      : image_rgb;
-    if (appearance.mode == Mode::kUnlit) return c;
+    if (appearance.mode == Mode::kUnlit || !appearance.light) return c;
     return c *
            std::sqrt(appearance.sun_ambient + appearance.sun_diffuse * std::max(0.0, glm::dot(normal, sun)));
   }

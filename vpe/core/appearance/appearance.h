@@ -8,7 +8,7 @@
 
 namespace vpe::core {
 
-// The way the surface is painted. Lit modes are shaded by the sun.
+// The way the surface is painted. Lit modes are shaded by the sun, unless Appearance::light is false.
 enum class Mode {
   kWireframe,  // edges of the drawn triangles
   kMarkers,    // a dot at each of their vertices
@@ -64,7 +64,13 @@ struct Appearance : HsvRamp {
   // for, which whoever draws decides first (vpe/app/picture/view_palette.h); ColourScale refuses it.
   std::optional<double> palette_low = 0.0;
   std::optional<double> palette_high = 0.0;
-  bool colourise = false;   // imagery keeps its brightness and takes hue and saturation from `colour`
+  // The values of imagery that are black and white, 0 to 255, and the gamma between them; larger: brighter.
+  double image_low = 0;
+  double image_high = 255;
+  double image_gamma = 1;
+  bool colourise = false;  // imagery keeps its brightness and takes hue and saturation from `colour`
+  // The sun lights ground in the lit modes. False: colours and imagery are as they are, for photographs with their own light.
+  bool light = true;
   double exaggeration = 1;  // factor on elevations; larger: steeper ground and larger errors
   // Position of the sun: "local" (azimuth and elevation at the ground below the camera), a date, or Ls and
   // local time; mars/geodesy/mars_time.h.

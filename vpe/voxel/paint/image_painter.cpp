@@ -194,7 +194,7 @@ void ImagePainter::read(const PaintPage& page) const {
   if (failures_.of(page)) return;
   try {
     if (page.is_image) {
-      shader_.image(page.key);
+      shader_.image(page.key, page.stretch);
       return;
     }
     paging::ShadingParams shading;

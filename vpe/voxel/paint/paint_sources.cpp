@@ -21,14 +21,19 @@ void PaintFailures::clear() {
 }
 
 PaintPage posts_page(const lod::TileKey& key, const paging::ShadingParams& shading) {
-  return {key, false, shading.exaggeration, shading.lit && shading.shadows ? shading.sun : glm::dvec3(0),
-          paging::shows_difference(shading)};
+  return {key,
+          false,
+          shading.exaggeration,
+          shading.lit && shading.shadows ? shading.sun : glm::dvec3(0),
+          paging::shows_difference(shading),
+          {}};
 }
 
-PaintPage texels_page(const lod::TileKey& key) {
+PaintPage texels_page(const lod::TileKey& key, const paging::ShadingParams& shading) {
   PaintPage page;
   page.key = key;
   page.is_image = true;
+  page.stretch = shading.stretch;
   return page;
 }
 
@@ -81,8 +86,8 @@ std::shared_ptr<const paging::NormalTile> PaintSources::posts(const lod::TileKey
 
 PaintSources::Texels PaintSources::texels(const lod::TileKey& key) {
   auto [tile, at] = find(
-      texels_page(key), [&](const lod::TileKey& k) { return shader_.image(k); },
-      [&](const lod::TileKey& k) { return shader_.held_image(k); });
+      texels_page(key, shading_), [&](const lod::TileKey& k) { return shader_.image(k, shading_.stretch); },
+      [&](const lod::TileKey& k) { return shader_.held_image(k, shading_.stretch); });
   return {std::move(tile), at};
 }
 

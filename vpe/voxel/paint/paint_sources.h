@@ -25,6 +25,7 @@ struct PaintPage {
   double exaggeration = 1;
   glm::dvec3 sun{0, 0, 0};
   bool has_differences = false;  // in place of heights (paging::NormalTile)
+  paging::ImageStretch stretch;  // describes texels
   bool operator==(const PaintPage&) const = default;
 };
 
@@ -55,9 +56,9 @@ class PaintFailures {
   std::map<PaintPage, std::string, Less> why_;
 };
 
-// Returns the page of the posts of a tile as `shading` needs them, and that of the texels of an image tile.
+// Return the page of the posts of a tile, and that of the texels of an image tile, as `shading` needs them.
 PaintPage posts_page(const lod::TileKey& key, const paging::ShadingParams& shading);
-PaintPage texels_page(const lod::TileKey& key);
+PaintPage texels_page(const lod::TileKey& key, const paging::ShadingParams& shading);
 
 // Any thread may call any member. What is decided of a page holds for the whole image.
 class PaintSources {

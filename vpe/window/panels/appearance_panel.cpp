@@ -227,6 +227,11 @@ void AppearancePanel::draw_season() {
 }
 
 void AppearancePanel::draw_air() {
+  bool light = session_->settings().values().light;
+  if (widgets_->check("Light", light,
+                      "the sun lights the ground; off for photographs that hold their own light"))
+    set("light", light ? "on" : "off");
+  ImGui::SameLine();
   bool shadows = session_->settings().values().shadows;
   if (widgets_->check("Cast shadows", shadows, "ground casts shadows on ground; takes longer"))
     set("shadows", shadows ? "on" : "off");
