@@ -30,6 +30,7 @@ const char* __lsan_default_options() { return "print_suppressions=0"; }
 const char* __tsan_default_suppressions() {
   return "race:_dri.so\nrace:libgallium\nrace:libEGL\nrace:libOSMesa\nrace:libLLVM\nrace:libfontconfig\n"
          "race:libgdal\nrace:libproj\nrace:libsqlite3\nrace:libcurl\nrace:libcairo\nrace:libpango\n"
+         "race:libopenvdb\nrace:libtbb\n"
          "deadlock:_dri.so\ndeadlock:libgallium\ndeadlock:libEGL\ndeadlock:libgdal\n";
 }
 

@@ -18,7 +18,7 @@
 
 #include "relief/cast/caster.h"
 #include "relief/field/height_map.h"
-#include "vpe/app/report/relief_hills.h"
+#include "vpe/app/report/papers/relief_hills.h"
 #include "vpe/base/quantile.h"
 #include "vpe/core/image/image.h"
 
