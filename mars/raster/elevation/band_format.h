@@ -1,4 +1,4 @@
-// How the first band of a raster stores heights.
+// The format in which a band of a raster stores heights.
 #pragma once
 
 #include <gdal.h>

@@ -237,6 +237,17 @@ TEST_F(SurfaceCommand, ReliefsLieOnABody) {
   EXPECT_NEAR(height_m(scene, mars::direction(mars::destination(place, 90, angle_rad))), 150, 7);
 }
 
+// Posts of reliefs beside a face may lie beyond the map's own ring: they take the ground of the next face.
+TEST_F(SurfaceCommand, ReliefsMayBeCoarserThanMaps) {
+  write_globe("h.tif", [](double, double) { return 100; });
+  write_text(dir_ / "c.relief.toml",
+             "version = 1\n[[relief]]\nkind = \"crater\"\nlon = 0\nlat = 0\nradius_m = 800\n");
+  const SurfaceScene scene = open(egg("reliefs = \"c.relief.toml\"\nrelief_posts = 65\n") +
+                                  "[[map]]\nfile = \"h.tif\"\nposts = 257\n");
+  for (const double lon_deg : {44.3, 44.9, 45.2, 45.8})
+    EXPECT_NEAR(height_m(scene, mars::direction({lon_deg, 11.3})), 100, 0.01) << lon_deg;
+}
+
 TEST_F(SurfaceCommand, NodataIsFilledOrAnError) {
   write_globe(
       "h.tif", [](double lon_deg, double) { return lon_deg > 0 ? 100 : -9; }, -9);

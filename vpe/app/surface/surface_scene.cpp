@@ -66,12 +66,12 @@ FaceShapes changed_faces(const relief::SurfaceFile& file, const FaceShapes& belo
     const ShapePointer& shape = below[static_cast<std::size_t>(face)];
     return shape != nullptr ? shape->height_m(u * file.radius_m, v * file.radius_m) : 0.0;
   };
+  const auto height_towards_m = [&](const glm::dvec3& d) {
+    const mars::ChartPoint at = mars::chart_point(d);
+    return height_m(at.face, at.u, at.v);
+  };
   const relief::Relief all = relief::place(
-      std::move(specs), [&](const glm::dvec3& d) { return base_radius_m(file.base, d); },
-      [&](const glm::dvec3& d) {
-        const mars::ChartPoint at = mars::chart_point(d);
-        return height_m(at.face, at.u, at.v);
-      });
+      std::move(specs), [&](const glm::dvec3& d) { return base_radius_m(file.base, d); }, height_towards_m);
   const FaceGrid grid(file.radius_m, file.relief_posts);
   FaceShapes shapes;
   double deviation_m = 0;
@@ -81,9 +81,16 @@ FaceShapes changed_faces(const relief::SurfaceFile& file, const FaceShapes& belo
     std::vector<double> ground_m(static_cast<std::size_t>(grid.side()));
     std::vector<relief::ReliefChange> changes(ground_m.size());
     for (int j = 0; j < grid.side(); ++j) {
-      for (int i = 0; i < grid.side(); ++i)
-        ground_m[static_cast<std::size_t>(i)] = height_m(face, grid.coordinate(i), grid.coordinate(j));
-      all.change(grid.row(face, j), ground_m, changes);
+      const std::vector<glm::dvec3> directions = grid.row(face, j);
+      for (int i = 0; i < grid.side(); ++i) {
+        const auto n_th = static_cast<std::size_t>(i);
+        const double u = grid.coordinate(i);
+        const double v = grid.coordinate(j);
+        // Beyond the face the ground is that of its neighbour: a finer map ends nearer to the edge than this ring.
+        const bool is_beyond = std::abs(u) > 1 || std::abs(v) > 1;
+        ground_m[n_th] = is_beyond ? height_towards_m(directions[n_th]) : height_m(face, u, v);
+      }
+      all.change(directions, ground_m, changes);
       for (const relief::ReliefChange& change : changes)
         heights_m.push_back(static_cast<float>(change.height_m));
     }

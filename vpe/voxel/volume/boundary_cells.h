@@ -13,7 +13,7 @@
 
 namespace vpe::voxel {
 
-// What a cell is by the array: all cells above the highest boundary cell are air, those below the lowest one ground.
+// Says what a cell is by the array: all cells above the highest boundary cell are air, those below the lowest one ground.
 enum class CellFlag : std::uint8_t { kAir, kBoundary, kGround };
 
 class BoundaryCells {
@@ -45,7 +45,7 @@ class BoundaryCells {
   double first_low(const glm::dvec3& origin, const glm::dvec3& direction, double t0, double t1) const;
 
  private:
-  // Of each block of 2^n x 2^n cells the highest boundary cell in it and beside it.
+  // Holds the highest boundary cell in and beside each block of 2^n x 2^n cells.
   struct Level {
     int columns = 0;
     std::vector<std::uint8_t> high;
