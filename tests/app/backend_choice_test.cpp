@@ -86,6 +86,10 @@ TEST(BackendChoice, SmoothGroundIsDrawnByRays) {
   const BackendChoice chosen = choice({request}, smooth);
   EXPECT_EQ(chosen.backend, Backend::kRay);
   EXPECT_EQ(chosen.settings.values().ray_mode, core::RayMode::kPerturbation);
+  // Voxels likewise.
+  RenderOptions voxels;
+  voxels.set = {"rays.mode=discrete"};
+  EXPECT_EQ(choice({request}, voxels).backend, Backend::kRay);
 }
 
 TEST(BackendChoice, RaysKeepToTheTolerance) {

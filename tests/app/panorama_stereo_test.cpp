@@ -157,6 +157,8 @@ TEST_F(StereoPanorama, TheRightEyeMayBeCarried) {
   };
   fails({"--stereo", "sbs", "--stereo-method", "reproject", "--set", "samples=1"}, {"side by side", "ou"});
   fails({"--stereo", "ou", "--stereo-method", "reproject", "--set", "samples=4"}, {"samples", "full"});
+  fails({"--stereo", "ou", "--stereo-method", "reproject", "--set", "rays.mode=discrete"},
+        {"rays.vertical", "full"});
   fails({"--stereo-method", "reproject"}, {"--stereo-method", "--stereo"});
 }
 

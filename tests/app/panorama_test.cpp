@@ -143,6 +143,8 @@ TEST_F(Panorama, RoundImagesHaveFourSamplesUnlessANumberIsNamed) {
   };
   const auto one = pixels({"--set", "samples=1"});
   EXPECT_EQ(pixels({}), pixels({"--set", "samples=4"}));
+  EXPECT_EQ(pixels({"--set", "rays.mode=discrete"}),
+            pixels({"--set", "rays.mode=discrete", "--set", "rays.vertical=4"}));
   EXPECT_NE(pixels({}), one);
   EXPECT_EQ(pixels({"--set", "edges=hard"}), one);
   const Words facets{"--projection", "facets"};

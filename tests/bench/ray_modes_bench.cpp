@@ -5,13 +5,12 @@
 //   ray_modes_bench DIR [ROUNDS]
 //
 // DIR holds the planets of ray_bench, or receives them.
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 
 #include "mars/geodesy/pose.h"
+#include "tests/bench/compare_rounds.h"
 #include "tests/bench/ray_bench_scenes.h"
 #include "vpe/base/parallel.h"
 #include "vpe/voxel/cast/range_caster.h"
@@ -46,40 +45,22 @@ struct Scene {
   }
 };
 
-double once(Scene& scene, const View& view, const RangeOptions& options, vpe::base::ThreadPool& pool) {
-  std::vector<float> out(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
-  const auto start = std::chrono::steady_clock::now();
-  scene.caster.cast(view, options, pool, out);
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Run {
   Scene* scene;
   View view;
   RangeOptions options;
 };
 
-// Prints the median of a, and of b / a in the same round. Rounds alternate; the first one loads and does not
-// count.
+// Compares two casts (compare_rounds.h). Each allocates its image, as its peer does.
 void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base::ThreadPool& pool) {
-  std::vector<double> times;
-  std::vector<double> ratios;
-  for (int r = 0; r <= rounds; ++r) {
-    const double ta = once(*a.scene, a.view, a.options, pool);
-    const double tb = once(*b.scene, b.view, b.options, pool);
-    if (r == 0) continue;
-    times.push_back(ta);
-    ratios.push_back(tb / ta);
-  }
-  const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
-  std::printf("| %s | %.1f | %.2f (%.2f..%.2f) |\n", name, median(times), median(ratios), *low, *high);
-  std::fflush(stdout);
+  const auto cast = [&pool](const Run& run) {
+    return [&run, &pool] {
+      std::vector<float> out(static_cast<std::size_t>(run.view.width) *
+                             static_cast<std::size_t>(run.view.height));
+      run.scene->caster.cast(run.view, run.options, pool, out);
+    };
+  };
+  bench::compare_rounds(name, cast(a), cast(b), rounds);
 }
 
 void run(const std::string& dir, int rounds) {

@@ -10,7 +10,7 @@
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/worst.h"
 #include "tests/voxel/stated_range.h"
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 namespace {
 

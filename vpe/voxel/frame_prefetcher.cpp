@@ -19,11 +19,6 @@ constexpr std::size_t kRangeDivisor = 8;
 constexpr int kStrips = 4;
 constexpr std::size_t kMostUpcoming = 3;
 
-std::size_t pixels_of(const core::View& view) {
-  const glm::ivec2 size = core::drawn_size(view);
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-}
-
 }  // namespace
 
 struct FramePrefetcher::Job {
@@ -60,7 +55,8 @@ FramePrefetcher::~FramePrefetcher() {
 
 bool FramePrefetcher::can_cast(const core::DrawRequest& next) const {
   return pool_.threads() > 1 && next.settings.samples <= 1 && !next.settings.ray_fovea &&
-         pixels_of(next.view) * sizeof(float) * kRangeDivisor <= budget_;
+         next.settings.ray_mode != core::RayMode::kDiscrete &&
+         drawn_pixels(next.view) * sizeof(float) * kRangeDivisor <= budget_;
 }
 
 void FramePrefetcher::begin(const core::DrawRequest& request) {
@@ -166,7 +162,7 @@ void FramePrefetcher::work(Job& job) {
     const std::lock_guard lock(mutex_);
     job.state = State::kCasting;
   }
-  range_m_.resize(pixels_of(job.next->view));
+  range_m_.resize(drawn_pixels(job.next->view));
   job.usage = caster_.cast(job.next->view, range_options(*job.next, planet_radius_m()), job.background_pool,
                            range_m_, sectors_);
   if (job.background_pool.is_stopped()) return;
@@ -176,18 +172,19 @@ void FramePrefetcher::work(Job& job) {
 
 bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const core::View& view) {
   RangeOptions options = range_options(request, planet_radius_m());
-  if (options.method != RangeOptions::Method::kColumns) return false;
+  if (options.method == RangeOptions::Method::kReference) return false;
+  options.discrete = {};
   options.cell_px /= kDownsampling;
   const HeightGridStore& store = caster_.store();
   const core::SubRectangle whole = core::drawn_part(view);
-  std::vector<float> all_m(pixels_of(view));
+  std::vector<float> all_m(drawn_pixels(view));
   std::vector<float> range_m;
   for (int strip = 0; strip < kStrips; ++strip) {
     core::View part = view;
     const int begin = whole.width * strip / kStrips;
     part.part = {whole.x + begin, whole.y, whole.width * (strip + 1) / kStrips - begin, whole.height};
     if (part.part.width == 0) continue;
-    range_m.resize(pixels_of(part));
+    range_m.resize(drawn_pixels(part));
     caster_.cast(part, options, job.reading_pool, range_m, coarse_sectors_);
     if (job.reading_pool.is_stopped() ||
         store.build_totals().bytes - job.bytes_before > store.budget_bytes() / kGridDivisor)

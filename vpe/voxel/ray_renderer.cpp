@@ -25,6 +25,7 @@
 #include "vpe/core/ray_lengths.h"
 #include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
+#include "vpe/voxel/discrete_image.h"
 #include "vpe/voxel/downsampled_view.h"
 #include "vpe/voxel/explain_tiles.h"
 #include "vpe/voxel/foveated_image.h"
@@ -53,11 +54,6 @@ constexpr double kSmoothShare = 0.45;
 // Upcoming views of an image that may not wait. Each takes a thousandth of its rays.
 constexpr std::size_t kMostExpected = 3;
 constexpr std::size_t kMostKeptPixels = std::size_t{1} << 24;
-
-std::size_t pixels_of(const core::View& view) {
-  const glm::ivec2 size = core::drawn_size(view);
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-}
 
 // Copies the values of a rectangle of the drawn part, row by row.
 void cut_out(std::span<const float> values, const core::SubRectangle& part, const core::SubRectangle& rectangle,
@@ -125,6 +121,9 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
                 Image& image);
   void draw_foveated(const core::DrawRequest& request, const FoveaPlan& plan, std::span<float> range_m,
                      std::span<base::Rgb> colour, Image& image);
+  // Casts voxels and, unless `colour` is empty, paints them.
+  void draw_discrete(const core::DrawRequest& request, const RangeOptions& options, std::span<float> range_m,
+                     std::span<base::Rgb> colour, Image& image);
   // Casts smooth ground and, unless `colour` is empty, paints it.
   void draw_smooth(const core::DrawRequest& request, const SmoothForm& form, std::span<float> range_m,
                    std::span<base::Rgb> colour, Image& image);
@@ -135,6 +134,8 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   // Returns the number of nodata pixels. Smooths edges where there is one sample a pixel.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, Image& image, std::span<const PixelNormal> normals = {});
+  // Smooths edges where the settings ask for it and there is one sample a pixel.
+  void smooth(const core::DrawRequest& request, std::span<const float> range_m, std::span<base::Rgb> colour);
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
                             const Image& image) const;
   // States what the image lacked, and lets the loader load it.
@@ -160,6 +161,7 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
   std::vector<float> inverse_depth_;
+  std::vector<float> rays_m_;  // of all rays of the pixels
   struct FoveaBuffers {
     std::vector<float> outer_m;
     std::vector<float> dense_m;
@@ -243,19 +245,23 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
 std::int64_t RayRenderer::paint(const core::DrawRequest& request, std::span<const float> range_m,
                                 std::span<base::Rgb> colour, Image& image,
                                 std::span<const PixelNormal> normals) {
-  const bool smooth = request.settings.smooth_edges && request.settings.samples <= 1 &&
-                      request.view.projection == core::Projection::kPerspective;
   const std::int64_t nodata_pixels =
       painter_.paint(request, range_m, colour, {}, pool_, &image.reading, normals);
   image.absent_colours.insert(image.absent_colours.end(), image.reading.absent.begin(),
                               image.reading.absent.end());
-  const glm::ivec2 size = core::drawn_size(request.view);
-  if (smooth) {
-    inverse_depth_.resize(range_m.size());
-    core::inverse_depths(request.view, range_m, pool_, inverse_depth_);
-    core::smooth_edges(colour, inverse_depth_, size.x, size.y, pool_);
-  }
+  smooth(request, range_m, colour);
   return nodata_pixels;
+}
+
+void RayRenderer::smooth(const core::DrawRequest& request, std::span<const float> range_m,
+                         std::span<base::Rgb> colour) {
+  if (!request.settings.smooth_edges || request.settings.samples > 1 ||
+      request.view.projection != core::Projection::kPerspective)
+    return;
+  const glm::ivec2 size = core::drawn_size(request.view);
+  inverse_depth_.resize(range_m.size());
+  core::inverse_depths(request.view, range_m, pool_, inverse_depth_);
+  core::smooth_edges(colour, inverse_depth_, size.x, size.y, pool_);
 }
 
 const SmoothGround& RayRenderer::smooth_ground() const {
@@ -302,8 +308,26 @@ void RayRenderer::draw_one(const core::DrawRequest& request, std::span<float> ra
     return;
   }
   const RangeOptions options = range_options(request, planet_->radius_m());
+  if (options.method == RangeOptions::Method::kDiscrete)
+    return draw_discrete(request, options, range_m, colour, image);
   image.usage.add(cast_in_bands(request.view, options, range_m, image.fallbacks), planet_->tree());
   if (!colour.empty()) image.nodata_pixels += paint(request, range_m, colour, image);
+}
+
+void RayRenderer::draw_discrete(const core::DrawRequest& request, const RangeOptions& options,
+                                std::span<float> range_m, std::span<base::Rgb> colour, Image& image) {
+  const int rays = options.discrete.rays;
+  std::span<float> rays_m = range_m;
+  if (rays > 1) {
+    rays_m_.resize(range_m.size() * static_cast<std::size_t>(rays));
+    rays_m = rays_m_;
+  }
+  image.usage.add(cast_in_bands(request.view, options, rays_m, image.fallbacks), planet_->tree());
+  if (rays > 1) take_middle_rays(rays_m, core::drawn_size(request.view).x, rays, range_m);
+  if (colour.empty()) return;
+  image.nodata_pixels +=
+      paint_discrete(request, rays_m, painter_, pool_, image.reading, image.absent_colours, colour);
+  if (rays == 1) smooth(request, range_m, colour);
 }
 
 void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPlan& plan,
@@ -312,7 +336,7 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
   core::DrawRequest outer = request;
   outer.view = plan.outer;
   std::vector<float>& outer_m = fovea_.outer_m;
-  outer_m.resize(pixels_of(outer.view));
+  outer_m.resize(drawn_pixels(outer.view));
   ColumnWalk::Usage usage = cast_in_bands(outer.view, options, outer_m, image.fallbacks);
   usage.scale_px(core::focal_px(request.view) / core::focal_px(outer.view));
   image.usage.add(usage, planet_->tree());
@@ -382,7 +406,10 @@ ColumnWalk::Usage RayRenderer::cast_in_bands(const core::View& view, const Range
   const core::SubRectangle whole = core::drawn_part(view);
   const auto width = static_cast<std::size_t>(whole.width);
   const auto height = static_cast<std::size_t>(whole.height);
-  const std::size_t most = max_image_bytes_ / 2 / kBytesOfSamples / std::max<std::size_t>(1, width);
+  // Rows of rays for each row of pixels.
+  const std::size_t rays =
+      options.method == RangeOptions::Method::kDiscrete ? static_cast<std::size_t>(options.discrete.rays) : 1;
+  const std::size_t most = max_image_bytes_ / 2 / kBytesOfSamples / std::max<std::size_t>(1, width * rays);
   const std::size_t rows = std::max(kLeastRows, most);
   if (rows >= height) return caster_.cast(view, options, pool_, range_m, &fallbacks);
   ColumnWalk::Usage usage;
@@ -390,8 +417,9 @@ ColumnWalk::Usage RayRenderer::cast_in_bands(const core::View& view, const Range
     const std::size_t count = std::min(rows, height - y);
     core::View band = view;
     band.part = {whole.x, whole.y + static_cast<int>(y), whole.width, static_cast<int>(count)};
-    usage.add(caster_.cast(band, options, pool_, range_m.subspan(y * width, count * width), &fallbacks),
-              planet_->tree());
+    usage.add(
+        caster_.cast(band, options, pool_, range_m.subspan(y * width * rays, count * width * rays), &fallbacks),
+        planet_->tree());
   }
   return usage;
 }
@@ -429,7 +457,8 @@ ReadingRule RayRenderer::reading_rule(const core::DrawRequest& request, bool rea
 std::vector<TileLoader::Expected> RayRenderer::expected_tiles(const core::DrawRequest& request) {
   std::vector<TileLoader::Expected> out;
   RangeOptions options = range_options(request, planet_->radius_m());
-  if (options.method != RangeOptions::Method::kColumns) return out;
+  if (options.method == RangeOptions::Method::kReference) return out;
+  options.discrete = {};
   options.cell_px /= FramePrefetcher::kDownsampling;
   for (std::size_t n = 0; n < std::min(request.paging.upcoming.size(), kMostExpected); ++n) {
     core::DrawRequest later = request;
@@ -545,14 +574,15 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   const glm::ivec2 size = core::drawn_size(request.view);
   frame.width = size.x;
   frame.height = size.y;
-  const std::size_t pixels = pixels_of(request.view);
+  const std::size_t pixels = drawn_pixels(request.view);
   frame.colour.resize(request.want_colour ? pixels : 0);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
   Image image(caster_.store(), request, reading_rule(request, reads_all));
   if (request.want_colour && request.settings.samples > 1) {
     draw_samples(request, frame, image);
-  } else if (fovea_plan(request) || smooth_form(request)) {
+  } else if (fovea_plan(request) || smooth_form(request) ||
+             request.settings.ray_mode == core::RayMode::kDiscrete) {
     draw_one(request, frame.range_m, frame.colour, image);
     if (request.paging.wait) prefetcher_.begin(request);
   } else {
@@ -572,11 +602,12 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
     inverse_depth_ = {};
     fovea_ = {};
     normals_ = {};
+    rays_m_ = {};
   }
   result.stats.draw_ms = ms_since(start);
   result.stats.bytes_resident = static_cast<std::int64_t>(
       caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
-      (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + fovea_.bytes() +
+      (range_m_.capacity() + inverse_depth_.capacity() + rays_m_.capacity()) * sizeof(float) + fovea_.bytes() +
       planet_->tree().bytes() + (smooth_ ? smooth_->bytes_resident() : 0) +
       normals_.capacity() * sizeof(PixelNormal));
   finish_paging(request, image, result);
@@ -586,8 +617,9 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
 core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
                                           core::Frame& frame) {
   require_drawable(request);
-  const std::size_t pixels = pixels_of(request.view);
-  if (request.settings.samples > 1) throw std::invalid_argument("single pixels are drawn with one sample each");
+  const std::size_t pixels = drawn_pixels(request.view);
+  if (!core::has_one_ray_a_pixel(request.settings))
+    throw std::invalid_argument("single pixels are drawn with one sample each");
   if (wanted.is_wanted.size() != pixels || wanted.clear_m.size() != pixels || frame.range_m.size() != pixels ||
       (request.want_colour && frame.colour.size() != pixels))
     throw std::invalid_argument("the pixels to draw have another size than the image");
@@ -611,14 +643,22 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
   normals_.clear();
   if (const std::optional<SmoothForm> form = smooth_form(for_planet)) {
     draw_smooth_pixels(for_planet, *form, wanted, frame, image);
+  } else if (for_planet.settings.ray_mode == core::RayMode::kDiscrete) {
+    // A voxel is found by the walk of its column alone.
+    rays_m_.resize(pixels);
+    draw_one(for_planet, rays_m_, {}, image);
+    for (std::size_t n = 0; n < pixels; ++n)
+      if (wanted.is_wanted[n] != 0) frame.range_m[n] = rays_m_[n];
   } else {
     image.usage = pixel_caster_.cast(for_planet.view, range_options(for_planet, planet_->radius_m()), wanted,
                                      pool_, frame.range_m, &image.fallbacks);
   }
   result.stats.select_ms = ms_since(start);
   if (request.want_colour) {
-    image.nodata_pixels = painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_,
-                                         &image.reading, normals_);
+    const bool is_discrete = for_planet.settings.ray_mode == core::RayMode::kDiscrete;
+    image.nodata_pixels =
+        painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_, &image.reading,
+                       normals_, is_discrete ? for_planet.settings.ray_ratio : 1);
     image.absent_colours = image.reading.absent;
   }
   result.certificate = certify(for_planet, frame, image);

@@ -6,7 +6,7 @@
 //     SectorPlan      divides a perspective image into sectors of vertical columns (cast/view_sector.h),
 //     ColumnBatch     hands neighbouring columns to threads (cast/column_batch.h),
 //     ColumnWalk      leads a group of columns over the tiles from near to far (cast/column_walk.h),
-//     walk_grid()     resolves rows at the edges of one tile's posts (cast/columns.h),
+//     walk_grid()     resolves rows at the edges of one tile's posts (columns/columns.h),
 //     refine_row()    moves the ranges from the columns to the pixels' own rays (cast/refine.h);
 //   cast_smooth()   takes its place for smooth ground (smooth/smooth_caster.h),
 //   ImagePainter    colours ground, haze and sky of these ranges (paint/image_painter.h);

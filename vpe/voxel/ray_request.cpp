@@ -13,6 +13,13 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
   RangeOptions options;
   options.exaggeration = request.settings.exaggeration;
   if (request.settings.ray_mode == core::RayMode::kReference) options.method = RangeOptions::Method::kReference;
+  if (request.settings.ray_mode == core::RayMode::kDiscrete) {
+    options.method = RangeOptions::Method::kDiscrete;
+    options.cell_px = request.settings.ray_ratio * std::max(1.0, request.coarsening);
+    options.discrete = {request.settings.ray_columns, request.settings.ray_vertical,
+                        request.settings.ray_blend};
+    return options;
+  }
   // Coarsening, the price of speed, acts on the cells.
   if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
     options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
@@ -25,15 +32,22 @@ std::optional<SmoothForm> smooth_form(const core::DrawRequest& request) {
   return SmoothForm{request.settings.ray_patch, request.settings.exaggeration};
 }
 
+std::size_t drawn_pixels(const core::View& view) {
+  const glm::ivec2 size = core::drawn_size(view);
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+}
+
 std::size_t ray_image_bytes(const core::DrawRequest& request) {
   // Colour, range and inverse depth, and copies while the image is smoothed and written.
   constexpr std::size_t kBytesPerPixel = 16;
   constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
   constexpr std::size_t kBytesOfFovea = 8;  // the outer image has a quarter of the pixels
   const bool has_normals = request.settings.ray_mode == core::RayMode::kPerturbation;
-  const glm::ivec2 size = core::drawn_size(request.view);
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-         (kBytesPerPixel + (request.settings.samples > 1 ? kBytesPerSum : 0) +
+  const bool is_discrete = request.settings.ray_mode == core::RayMode::kDiscrete;
+  const std::size_t bytes_of_rays =
+      is_discrete ? (static_cast<std::size_t>(request.settings.ray_vertical) + 1) * kBytesPerSum : 0;
+  return drawn_pixels(request.view) *
+         (kBytesPerPixel + (request.settings.samples > 1 ? kBytesPerSum : 0) + bytes_of_rays +
           (request.settings.ray_fovea ? kBytesOfFovea : 0) + (has_normals ? sizeof(PixelNormal) : 0));
 }
 
@@ -51,6 +65,19 @@ std::string why_not(const core::DrawRequest& request) {
       !control.empty() && request.settings.ray_mode != core::RayMode::kMultires)
     return "the ray backend draws the finest tiles everywhere: " + std::string(control) +
            " acts with --set rays.mode=multires, or with --backend polygon";
+  if (request.settings.ray_mode == core::RayMode::kDiscrete) {
+    if (!casts_by_columns(request.view))
+      return "rays.mode=discrete casts vertical columns: perspective images, and panoramas of a level camera; use another "
+             "rays.mode";
+    if (request.settings.samples > 1)
+      return "rays.mode=discrete has its own rays in a pixel: set rays.vertical, and leave out samples";
+    if (request.settings.ray_columns == core::RayColumns::kLines) {
+      if (request.view.projection != core::Projection::kPerspective)
+        return "rays.columns=lines is for perspective images: use --set rays.columns=sectors";
+      if (request.settings.ray_vertical > 1)
+        return "rays.columns=lines has one ray in a pixel: set rays.vertical=1, or rays.columns=sectors";
+    }
+  }
   if (request.settings.ray_fovea) {
     if (request.settings.ray_mode != core::RayMode::kMultires)
       return "rays.fovea thins the rays of rays.mode=multires only: add --set rays.mode=multires, or set "

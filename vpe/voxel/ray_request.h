@@ -13,6 +13,9 @@
 
 namespace vpe::voxel {
 
+// Returns the number of pixels of a view's drawn part.
+std::size_t drawn_pixels(const core::View& view);
+
 // Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed, merged and
 // written. The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in
 // bands.

@@ -97,7 +97,8 @@ void ExploreWindow::request_image() {
                                          glm::ivec2(next->view.width, next->view.height) / kMostMargin);
   // Beside the finest tiles everywhere, any tolerance would be a leap.
   const bool is_exact = request.backend == core::Backend::kRay && !request.is_auto &&
-                        request.draw.settings.ray_mode != core::RayMode::kMultires;
+                        request.draw.settings.ray_mode != core::RayMode::kMultires &&
+                        request.draw.settings.ray_mode != core::RayMode::kDiscrete;
   if (is_exact) request.draw.coarsening = 1;
   const ImageRequest drawn = setup_.as_drawn ? setup_.as_drawn(request) : request;
   // Tolerances are in pixels of the screen, also where the image has fewer.
@@ -105,6 +106,7 @@ void ExploreWindow::request_image() {
   request.px_per_screen_px = next->side;
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;
+  request.draw.settings.ray_ratio *= next->side;
   request.flight_time_s = objects_.time_s();
   if (followed != nullptr) {
     request.draw.tracks = followed->tracks();

@@ -1,5 +1,5 @@
 // Lines of pixels: they cover images of all sizes at all angles, each pixel once.
-#include "vpe/voxel/volume/pixel_lines.h"
+#include "vpe/voxel/columns/pixel_lines.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -84,9 +84,10 @@ std::vector<panorama::Plane> layers_of(const PanoramaArguments& arguments) {
 core::Settings settings_of(const PanoramaArguments& arguments, MapKind kind) {
   core::Settings settings = make_settings(arguments.render);
   const bool is_named = std::ranges::any_of(arguments.render.set, [](const std::string& text) {
-    return text.starts_with("samples=") || text == "edges=hard";
+    return text.starts_with("samples=") || text.starts_with("rays.vertical=") || text == "edges=hard";
   });
-  if (kind != MapKind::kFacets && !is_named) (void)settings.set("samples", "4");
+  const bool is_discrete = settings.values().ray_mode == core::RayMode::kDiscrete;
+  if (kind != MapKind::kFacets && !is_named) (void)settings.set(is_discrete ? "rays.vertical" : "samples", "4");
   if (settings.values().ray_fovea) throw UsageError("--set rays.fovea: a panorama has no middle; leave it out");
   return settings;
 }

@@ -74,9 +74,9 @@ void check_stereo_panorama(const PanoramaRequest& request) {
         "--stereo-method reproject: side by side, the left image is finished before the right one is begun; use "
         "--stereo ou or anaglyph, or --stereo-method full");
   }
-  if (request.stereo->carried_gap_px && request.settings.values().samples > 1) {
+  if (request.stereo->carried_gap_px && !core::has_one_ray_a_pixel(request.settings.values())) {
     throw UsageError(
-        "--stereo-method reproject: images with several samples a pixel (samples) are not carried; use "
+        "--stereo-method reproject: images with several samples a pixel (samples, rays.vertical) are not carried; use "
         "--stereo-method full");
   }
   if (!request.layers.empty()) {

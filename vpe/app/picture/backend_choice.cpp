@@ -49,7 +49,9 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
                              std::span<const core::DrawRequest> images, double radius_m, bool has_gpu) {
   if (options.backend) return {*options.backend, settings};
   // No other backend has it.
-  if (settings.values().ray_mode == core::RayMode::kPerturbation) return {core::Backend::kRay, settings};
+  const core::RayMode mode = settings.values().ray_mode;
+  if (mode == core::RayMode::kPerturbation || mode == core::RayMode::kDiscrete)
+    return {core::Backend::kRay, settings};
   const auto for_rays = std::count_if(images.begin(), images.end(), [&](const core::DrawRequest& request) {
     return glm::length(request.view.camera.position_m) < (1 + core::kRaysReach_radii) * radius_m &&
            core::reaches_horizon(request.view, radius_m);

@@ -73,7 +73,8 @@ void state(const warp::CarriedImage& image, const core::Certificate& first, core
 std::string why_not_carried(const core::DrawRequest& request) {
   if (request.view.projection != core::Projection::kPerspective)
     return "only perspective images are carried from others";
-  if (request.settings.samples > 1) return "images with several samples a pixel (samples) are not carried";
+  if (!core::has_one_ray_a_pixel(request.settings))
+    return "images with several samples a pixel (samples, rays.vertical) are not carried";
   return voxel::why_not(request);
 }
 

@@ -161,11 +161,12 @@ const KeyRegistry<SettingsValues>& registry() {
       {"rays.mode",
        Declare::choice<&V::ray_mode>({word("exact", RayMode::kExact), word("multires", RayMode::kMultires),
                                       word("reference", RayMode::kReference),
-                                      word("perturbation", RayMode::kPerturbation)}),
+                                      word("perturbation", RayMode::kPerturbation),
+                                      word("discrete", RayMode::kDiscrete)}),
        "",
        "backend ray: exact casts against the exact surface; multires takes coarser cells far away; reference "
        "follows each ray in steps of 0.6 cells, slowly, for comparison; perturbation casts against smooth patches "
-       "through the same posts, without facets"},
+       "through the same posts, without facets; discrete takes one voxel at each grid line (Cohen-Or 1996)"},
       {"rays.patch",
        Declare::choice<&V::ray_patch>(
            {word("bicubic", RayPatch::kBicubic), word("bilinear", RayPatch::kBilinear)}),
@@ -177,6 +178,19 @@ const KeyRegistry<SettingsValues>& registry() {
        Declare::number_or_word<&V::ray_fovea>(RayLimits::kLeastFovea, RayLimits::kMostFovea, "off"), "",
        "backend ray, mode multires, perspective: share of the image's sides, about its middle, that has a ray for "
        "each pixel; the rest has half as many columns and rows; off: all of the image"},
+      {"rays.ratio", Declare::number<&V::ray_ratio>(RayLimits::kLeastRatio, RayLimits::kMostRatio), "px",
+       "backend ray, mode discrete: largest width of a voxel in the image, for heights and colours; larger: faster, "
+       "blurred"},
+      {"rays.blend", Declare::choice<&V::ray_blend>({word("off", false), word("on", true)}), "",
+       "backend ray, mode discrete: fades levels of heights and colours into each other by distance"},
+      {"rays.vertical", Declare::choice<&V::ray_vertical>({word("1", 1), word("2", 2), word("4", 4)}), "",
+       "backend ray, mode discrete: rays in each pixel, one above the other"},
+      {"rays.columns",
+       Declare::choice<&V::ray_columns>(
+           {word("sectors", RayColumns::kSectors), word("lines", RayColumns::kLines)}),
+       "",
+       "backend ray, mode discrete: columns are vertical planes (sectors), or parallel lines of pixels taken as such, "
+       "as in the papers (lines)"},
       {"scene", Declare::text<&V::scene>("a scene file, *.scene.toml or GeoJSON points", no_problem), "",
        "objects on the ground: models and their places"},
       {"samples", Declare::choice<&V::samples>({word("1", 1), word("2", 2), word("4", 4)}), "",

@@ -34,6 +34,7 @@ enum class RayMode {
   kMultires,      // intersects cells about as wide as a pixel, far away
   kReference,     // follows each ray by itself in fixed steps, as the papers do: the baseline of comparisons
   kPerturbation,  // intersects smooth patches through the posts of the reference surface, in place of flat facets
+  kDiscrete,      // samples one voxel at each grid line of a column's path (Cohen-Or 1996)
 };
 
 // The heights between posts with RayMode::kPerturbation.
@@ -42,12 +43,20 @@ enum class RayPatch {
   kBilinear,  // without a step, but with a crease at each line of posts
 };
 
+// The columns of an image with RayMode::kDiscrete.
+enum class RayColumns {
+  kSectors,  // vertical planes, whatever the pitch and roll
+  kLines,    // parallel lines of pixels, each taken as a vertical plane
+};
+
 enum class Occlusion { kAuto, kOff, kOn };
 
-// Limits of rays.cell and rays.fovea.
+// Limits of rays.cell, rays.ratio and rays.fovea.
 struct RayLimits {
   static constexpr double kLeastCell_px = 1.0 / 64;
   static constexpr double kMostCell_px = 64;
+  static constexpr double kLeastRatio = 1.0 / 16;
+  static constexpr double kMostRatio = 64;
   static constexpr double kLeastFovea = 0.05;
   static constexpr double kMostFovea = 0.95;
 };
@@ -87,12 +96,24 @@ struct SettingsValues : Appearance, Overlays {
   // RayMode::kMultires, perspective: the share of each side of the image, about its middle, that has a ray for each
   // pixel; the rest has half as many columns and rows. Smaller: faster, less is sharp. nullopt: all of the image.
   std::optional<double> ray_fovea;
+  // RayMode::kDiscrete: largest width of a voxel in the image, in pixels. Smaller: sharper, slower in proportion.
+  double ray_ratio = 1;
+  bool ray_blend = false;  // RayMode::kDiscrete: levels of heights and colours fade into each other by distance
+  // RayMode::kDiscrete: rays in each pixel, one above the other, which share the walk of their column. More: smoother where the
+  // ground is seen at a grazing angle.
+  int ray_vertical = 1;
+  RayColumns ray_columns = RayColumns::kSectors;
   std::string scene;         // path of a scene file (objects/files/scene_file.h); "": no objects
   int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
   bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel
 
   bool operator==(const SettingsValues&) const = default;
 };
+
+// Returns true if each pixel shows a single ray, so that pixels can be drawn one by one or carried to another image.
+inline bool has_one_ray_a_pixel(const SettingsValues& settings) {
+  return settings.samples <= 1 && (settings.ray_mode != RayMode::kDiscrete || settings.ray_vertical == 1);
+}
 
 enum class SettingType { kNumber, kInteger, kChoice, kTable, kText };
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mars/geodesy/cube.h"
+#include "vpe/voxel/columns/discrete.h"
 
 namespace vpe::voxel {
 
@@ -140,7 +141,11 @@ class GroupWalk : public HeightGridSource {
       grid_j_ = j;
       const int n = tree_.shape().intervals() / per_side;
       const HeightGridFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
-      walk_grid(frame, *this, walk_.camera_, up_, rows_, group_);
+      if (walk_.rule_.is_discrete) {
+        walk_grid_discretely(frame, *this, walk_.camera_, up_, rows_, walk_.blend_from_m(tile_), group_);
+      } else {
+        walk_grid(frame, *this, walk_.camera_, up_, rows_, group_);
+      }
       update_least_slope(rows_, group_);
       return;
     }

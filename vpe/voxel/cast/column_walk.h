@@ -12,9 +12,9 @@
 #include "lod/control.h"
 #include "lod/tree/tree.h"
 #include "paging/surface/surface.h"
-#include "vpe/voxel/cast/columns.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/cast/tile_usage.h"
+#include "vpe/voxel/columns/columns.h"
 
 namespace vpe::voxel {
 
@@ -33,6 +33,10 @@ struct CellRule {
   double focal_px = 1;                         // pixels per radian at the image's centre (core::focal_px)
   const lod::LevelControl* control = nullptr;  // null: neutral; must outlive the walk
   lod::CentreOfView centre = {};
+  // Cells of the discrete walk (discrete.h) are at most cell_px wide in the image, whatever their error, and the finest where
+  // cell_px is 0. Tiles are cast by that walk.
+  bool is_discrete = false;
+  bool blends = false;  // voxels go over to those twice as wide, by distance; with is_discrete alone
 };
 
 // Holds what all groups of one image share: camera, exaggeration, and the tiles' bounds seen from there.
@@ -50,6 +54,8 @@ class ColumnWalk {
   void cast(const glm::dvec3* azimuth, const Rows& rows, ThreadLocalTiles& tiles, ColumnGroup& group) const;
 
   const ColumnCamera& camera() const { return camera_; }
+  // Returns true if tiles are walked by walk_grid_discretely().
+  bool is_discrete() const { return rule_.is_discrete; }
   const lod::TileTree& tree() const { return tree_; }
 
   // Returns true if the tile's own posts are cast, because it is fine enough or the finest there; or those of an
@@ -88,9 +94,14 @@ class ColumnWalk {
   double posts_error_m(lod::TileTree::Index tile) const;
   // Returns the bound for a tile that is cast with the posts of `source`, an ancestor of it.
   double fallback_error_m(lod::TileTree::Index tile, lod::TileTree::Index source) const;
+  double spacing_m(lod::TileTree::Index tile) const;  // of posts, nominal
   double reach_m(lod::TileTree::Index tile) const;
   // Returns the largest screen-space error that a geometric error at this tile can cause.
   double in_image_px(double geometric_error_m, lod::TileTree::Index tile) const;
+  // Returns how far the samples of the discrete walk are from the tile's posts as a grid.
+  double voxel_error_m(lod::TileTree::Index tile) const;
+  // Returns the range from which on voxels of the tile's own go over to wider ones; 0 if they never do.
+  double blend_from_m(lod::TileTree::Index tile) const;
   // Returns true if the tile is fine enough by the rule, whatever is there.
   bool is_fine(lod::TileTree::Index tile) const;
 

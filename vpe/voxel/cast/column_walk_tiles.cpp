@@ -97,6 +97,20 @@ double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
   return tree_.geometric_error_m(info, info.posts_terms.terms(), exaggeration_);
 }
 
+// What lies between two lines shows the voxel on the second one. A step from line to line is at most sqrt(2) cells long, and the
+// tops of its voxels are those of posts half a cell aside, or of every second post.
+double ColumnWalk::voxel_error_m(lod::TileTree::Index tile) const {
+  if (!rule_.is_discrete) return 0;
+  const double step_m = std::sqrt(2.0) * reach_m(tile);
+  const double aside_m = blend_from_m(tile) > 0 ? step_m : reach_m(tile) / 2;
+  return std::hypot(step_m, tree_.steepest_slope(tree_[tile], exaggeration_) * (step_m + 2 * aside_m));
+}
+
+double ColumnWalk::blend_from_m(lod::TileTree::Index tile) const {
+  if (!rule_.blends || !(rule_.cell_px > 0)) return 0;
+  return spacing_m(tile) * rule_.focal_px / rule_.cell_px;
+}
+
 double ColumnWalk::in_image_px(double geometric_error_m, lod::TileTree::Index tile) const {
   return geometric_error_m * rule_.focal_px / least_distance_m(tile);
 }
@@ -114,9 +128,9 @@ bool ColumnWalk::is_fine(lod::TileTree::Index tile) const {
     factor = std::exp2(lod::level_shift(terms.sum));
     cell_px *= lod::degrade_factor(*rule_.control, terms.degrade_weight);
   }
-  if (info.posts_terms.known()) return factor * in_image_px(measured_error_m(tile), tile) <= cell_px;
-  const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
-  return factor * spacing * rule_.focal_px <= cell_px * least_distance_m(tile);
+  if (info.posts_terms.known() && !rule_.is_discrete)
+    return factor * in_image_px(measured_error_m(tile), tile) <= cell_px;
+  return factor * spacing_m(tile) * rule_.focal_px <= cell_px * least_distance_m(tile);
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
@@ -148,12 +162,13 @@ lod::TileTree::Index ColumnWalk::below_camera() const {
   return tile;
 }
 
+double ColumnWalk::spacing_m(lod::TileTree::Index tile) const {
+  return lod::nominal_side_m(tree_[tile].key.level, camera_.radius_m) / tree_.shape().intervals();
+}
+
 // Any place of a cell is at most a cell's side away from a post (half a diagonal from the nearest), and warped
 // lines are up to sqrt(2) times the nominal spacing apart.
-double ColumnWalk::reach_m(lod::TileTree::Index tile) const {
-  return std::sqrt(2.0) * lod::nominal_side_m(tree_[tile].key.level, camera_.radius_m) /
-         tree_.shape().intervals();
-}
+double ColumnWalk::reach_m(lod::TileTree::Index tile) const { return std::sqrt(2.0) * spacing_m(tile); }
 
 double ColumnWalk::posts_error_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
@@ -193,7 +208,8 @@ TileUsage ColumnWalk::usage() const {
     if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
     const lod::TileTree::Index source = fallbacks_ != nullptr ? fallbacks_->source_of(tile) : tile;
     TileUse use{tile, source, least_distance_m(tile)};
-    use.geometric_error_m = source == tile ? posts_error_m(tile) : fallback_error_m(tile, source);
+    use.geometric_error_m =
+        (source == tile ? posts_error_m(tile) : fallback_error_m(tile, source)) + voxel_error_m(source);
     if (use.geometric_error_m != 0) use.screen_space_error_px = in_image_px(use.geometric_error_m, tile);
     usage.tiles.push_back(use);
     usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(tree_[source], exaggeration_));

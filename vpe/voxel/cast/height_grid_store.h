@@ -18,7 +18,7 @@
 #include "paging/planet/planet_file.h"
 #include "paging/planet/tile_version.h"
 #include "vpe/base/lru_cache.h"
-#include "vpe/voxel/cast/height_grid.h"
+#include "vpe/voxel/columns/height_grid.h"
 
 namespace vpe::voxel {
 

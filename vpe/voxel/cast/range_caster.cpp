@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "vpe/voxel/cast/column_batch.h"
@@ -50,11 +51,12 @@ struct ImageRows {
   std::vector<float> length;
 };
 
-ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
+// Returns the rows of rays, `rays` of them for each row of pixels.
+ImageRows image_rows(const core::View& view, const core::SubRectangle& part, int rays) {
   ImageRows p;
-  p.rows.count = part.height;
+  p.rows.count = part.height * rays;
   const auto finish = [&] {
-    for (int r = 0; r < part.height; ++r) {
+    for (int r = 0; r < p.rows.count; ++r) {
       const double slope =
           p.exact.empty() ? (r - p.rows.centre) * p.rows.step : p.exact[static_cast<std::size_t>(r)];
       p.length.push_back(static_cast<float>(std::hypot(1.0, slope)));
@@ -62,8 +64,9 @@ ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
     p.rows.length = p.length.data();
   };
   const double centre_y = 0.5 * view.height + view.principal_offset_px.y;
-  const double lowest = centre_y - (part.y + part.height - 0.5);  // of row 0, upward from the principal row
-  const double focal = core::focal_px(view);
+  // In rows of rays: of row 0, upward from the principal row.
+  const double lowest = rays * centre_y - (rays * (part.y + part.height) - 0.5);
+  const double focal = rays * core::focal_px(view);
   if (view.projection == core::Projection::kCylinder) {
     p.rows.kind = RowKind::kEven;
     p.rows.centre = -lowest;
@@ -76,7 +79,7 @@ ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
   p.rows.elevation_step = 1.0 / focal;
   // A row that looks straight up or down still has a slope.
   constexpr double kSteepest = 1e12;
-  for (int r = 0; r < part.height; ++r)
+  for (int r = 0; r < p.rows.count; ++r)
     p.exact.push_back(std::clamp(std::tan((lowest + r) / focal), -kSteepest, kSteepest));
   p.exact.push_back(std::numeric_limits<double>::infinity());
   p.rounded.assign(p.exact.begin(), p.exact.end());
@@ -87,6 +90,12 @@ ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
 }
 
 }  // namespace
+
+bool casts_by_columns(const core::View& view) {
+  const double distance = glm::length(view.camera.position_m);
+  return view.projection == core::Projection::kPerspective ||
+         (distance > 0 && upright(view, view.camera.position_m / distance));
+}
 
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : surface_(planet, bytes_of_share(budget_bytes, kSurfaceShare)),
@@ -106,6 +115,9 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
                                     std::span<float> range_m, SectorCaster& sectors,
                                     TileFallbacks* fallbacks) const {
   const double distance = glm::length(view.camera.position_m);
+  const bool is_discrete = options.method == RangeOptions::Method::kDiscrete;
+  if (is_discrete && !casts_by_columns(view))
+    throw std::invalid_argument("the discrete caster draws perspective views and those of a level camera");
   const SingleRays single_rays(surface_, options.exaggeration, fallbacks);
   ScratchPool scratches = make_scratch_pool(store_, options.exaggeration, fallbacks);
   std::optional<ColumnWalk> walk;
@@ -114,11 +126,12 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
     const glm::dvec3 up = view.camera.position_m / distance;
     const double ground_m = ground_radius_m(up, options.exaggeration, fallbacks);
     if (distance > ground_m) {
-      walk.emplace(
-          surface_, ColumnCamera{up, distance, surface_.planet_radius_m(), ground_m}, options.exaggeration,
-          CellRule{options.cell_px, core::focal_px(view),
-                   lod::is_neutral(options.control) ? nullptr : &options.control, lod::centre_of_view(view)},
-          fallbacks);
+      walk.emplace(surface_, ColumnCamera{up, distance, surface_.planet_radius_m(), ground_m},
+                   options.exaggeration,
+                   CellRule{options.cell_px, core::focal_px(view),
+                            lod::is_neutral(options.control) ? nullptr : &options.control,
+                            lod::centre_of_view(view), is_discrete, is_discrete && options.discrete.blends},
+                   fallbacks);
       if (fallbacks != nullptr && fallbacks->purpose() == TileFallbacks::Purpose::kImage)
         fallbacks->require(walk->below_camera());
     }
@@ -130,13 +143,19 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
       if (is_reference) {
         march_fixed_steps(view, *walk, scratches, pool, range_m);
       } else if (round) {
-        cast_upright(view, *walk, scratches, pool, range_m);
+        cast_upright(view, *walk, is_discrete ? options.discrete.rays : 1, scratches, pool, range_m);
+      } else if (is_discrete) {
+        cast_discretely(view, *walk, options.discrete, scratches, pool, sectors.samples(), range_m);
       } else {
         sectors.cast(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool, range_m,
                      options.only);
       }
       return walk->usage();
     }
+  }
+  if (is_discrete) {
+    std::ranges::fill(range_m, 0.0F);  // the camera is below the ground
+    return {};
   }
   cast_single_rays(view, single_rays, walk ? &*walk : nullptr, scratches, pool, range_m);
   ColumnWalk::Usage usage;
@@ -157,22 +176,23 @@ double RangeCaster::range_error(const core::View& view, double exaggeration) con
   return is_high ? kWideRangeError : range_error(view);
 }
 
-void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
+void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
                                base::ThreadPool& pool, std::span<float> range_m) const {
   const core::SubRectangle part = core::drawn_part(view);
-  const ImageRows image = image_rows(view, part);
+  const ImageRows image = image_rows(view, part, rays);
   const double level_y = 0.5 * view.height + view.principal_offset_px.y;
   const glm::dvec3& up = walk.camera().up;
   ColumnBatch batch;
   batch.rows = image.rows;
+  batch.rows.has_ranges = walk.is_discrete();
   batch.columns = part.width;
   batch.stride = -static_cast<std::ptrdiff_t>(part.width);
-  batch.out = range_m.data() - batch.stride * (part.height - 1);
+  batch.out = range_m.data() - batch.stride * (batch.rows.count - 1);
   batch.stream = range_m.size_bytes() > kCachedBytes;
   batch.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
     const glm::dvec3 ray = core::pixel_ray(view, part.x + column + 0.5, level_y);
     azimuth = glm::normalize(ray - glm::dot(ray, up) * up);
-    group.row_end[lane] = static_cast<float>(part.height);
+    group.row_end[lane] = static_cast<float>(batch.rows.count);
   };
   cast_columns({&batch, 1}, walk, scratches, pool);
 }

@@ -21,6 +21,7 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
+#include "vpe/voxel/cast/discrete_caster.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/cast/sector_caster.h"
 
@@ -35,6 +36,7 @@ struct RangeOptions {
     kColumns,     // columns and sectors where the view allows it
     kSingleRays,  // every ray by itself, down the maximum pyramids; ignores cell_px
     kReference,   // every ray by itself in fixed steps (fixed_step_marcher.h)
+    kDiscrete,    // columns of voxels (discrete_caster.h), at most cell_px wide
   };
   // kColumns is by far the fastest. The others are checks, and the baseline of measurements
   // (docs/measurements/rays.md).
@@ -43,18 +45,22 @@ struct RangeOptions {
   // The pixels of the full image whose ranges are wanted; width 0: all of the drawn part. In perspective by columns
   // the others cost nothing and are not written, but for some beside it (SectorCaster); elsewhere all are cast.
   core::SubRectangle only = {};
+  DiscreteForm discrete = {};  // with kDiscrete alone
   bool operator==(const RangeOptions&) const = default;
 };
+
+// Returns true if the view's image can be cast by columns: perspective views, and round ones of a level camera.
+bool casts_by_columns(const core::View& view);
 
 class RangeCaster {
  public:
   // A quarter of the budget goes to single rays (paging::Surface), the rest to height grids.
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
-  // Writes the ranges of the view's drawn part, row by row from the top: metres from the camera to the
+  // Writes the ranges of the view's drawn part (with kDiscrete, discrete.rays rows for each row of pixels), row by row from the top: metres from the camera to the
   // reference surface as exaggerated, infinite for the sky, 0 for a camera below the surface. Columns serve
   // perspective views, and cylindrical and equirectangular ones whose camera is level; other views get a ray
-  // for each pixel.
+  // for each pixel. kDiscrete throws std::invalid_argument for these (see casts_by_columns()).
   //
   // With cell_px 0 ranges are those of paging::Surface::cast() but for rounding: the relative error is below
   // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts.
@@ -104,7 +110,7 @@ class RangeCaster {
  private:
   // Returns the radius of the ground below the camera, or of what lies no higher if nothing may be read.
   double ground_radius_m(const glm::dvec3& up, double exaggeration, const TileFallbacks* fallbacks) const;
-  void cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
+  void cast_upright(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
                     base::ThreadPool& pool, std::span<float> range_m) const;
   void cast_single_rays(const core::View& view, const SingleRays& single_rays, const ColumnWalk* walk,
                         ScratchPool& scratches, base::ThreadPool& pool, std::span<float> range_m) const;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "mars/geodesy/cube.h"
-#include "vpe/voxel/cast/height_grid.h"
+#include "vpe/voxel/columns/height_grid.h"
 
 namespace vpe::voxel {
 

@@ -69,33 +69,8 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const core::SubRectangle
   samples_.resize(std::max(samples_.size(), plan.sectors().size()));
   for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
     const ViewSector& sector = plan.sectors()[f];
-    // Grows alone: images of two sizes in turn would be filled with zeros again and again.
-    const std::size_t needed = static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines);
-    if (samples_[f].size() < needed) samples_[f].resize(needed);
     const SectorPlan::Window window = SectorPlan::window(sector, pixels);
-    if (window.is_empty()) continue;
-    // Rows before the window are resolved too: where a run of rows begins decides how its ranges are rounded.
-    const int stop = sector.rising ? window.end_step : sector.steps - window.first_step;
-    ColumnBatch& batch = batches.emplace_back();
-    batch.rows.kind = RowKind::kSector;
-    batch.rows.count = sector.steps;
-    batch.columns = window.end_line - window.first_line;
-    // Samples are stored by step.
-    batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
-    batch.out = samples_[f].data() + window.first_line +
-                (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
-    batch.set_column = [&plan, &sector, first = window.first_line, stop](int column, ColumnGroup& group,
-                                                                         int lane, glm::dvec3& azimuth) {
-      const SectorLine line = plan.line(sector, first + column);
-      azimuth = line.azimuth;
-      group.sector_a0[lane] = line.a0;
-      group.sector_a1[lane] = line.a1;
-      group.sector_b0[lane] = line.b0;
-      group.sector_b1[lane] = line.b1;
-      group.row[lane] = static_cast<float>(line.row_begin);
-      group.row_end[lane] = static_cast<float>(line.row_end);
-      group.row_stop[lane] = static_cast<float>(stop);
-    };
+    if (!window.is_empty()) batches.push_back(sector_batch(plan, sector, window, samples_[f]));
   }
   cast_columns(batches, walk, scratches, pool);
 }

@@ -10,6 +10,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
 #include "vpe/voxel/cast/column_batch.h"
+#include "vpe/voxel/cast/sector_batch.h"
 #include "vpe/voxel/cast/single_rays.h"
 #include "vpe/voxel/cast/view_sector.h"
 
@@ -32,6 +33,9 @@ class SectorCaster {
             const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
             const core::SubRectangle& only = {});
 
+  // Lends the memory of the samples to casts of another kind.
+  SectorSamples& samples() { return samples_; }
+
   // Returns the bytes of the samples that are kept.
   std::size_t bytes() const;
 
@@ -42,7 +46,7 @@ class SectorCaster {
   void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                   int last_pixel, float* a, float* b, float* share) const;
 
-  std::vector<std::vector<float>> samples_;  // of the last image, by sector and step
+  SectorSamples samples_;  // of the last image
 };
 
 }  // namespace vpe::voxel

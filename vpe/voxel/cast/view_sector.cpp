@@ -11,7 +11,7 @@ namespace {
 
 // Steps nearer than this to V have no usable direction.
 constexpr double kNearest_px = 0.01;
-// Pixels beyond a sector or the image that are also cast, so that a nearest sample always exists.
+// Pixels beyond a sector or the image that are also cast, so that a nearest sample always exists; or a spacing, if that is wider.
 constexpr double kMargin_px = 1.0;
 
 }  // namespace
@@ -23,7 +23,8 @@ SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spac
       focal_(core::focal_px(view)),
       cx_(0.5 * view.width + view.principal_offset_px.x),
       cy_(0.5 * view.height + view.principal_offset_px.y),
-      spacing_(spacing_px) {
+      spacing_(spacing_px),
+      margin_px_(std::max(kMargin_px, spacing_px)) {
   const mars::Axes& axes = view.camera.axes;
   vw_ = glm::dot(up, axes.forward);
   vx_ = cx_ * vw_ + focal_ * glm::dot(up, axes.right);
@@ -68,8 +69,8 @@ SectorPlan::Span SectorPlan::upright_span(int row) const {
 void SectorPlan::add(bool upright, bool forward) {
   const int t0 = upright ? part_.y : part_.x;
   const int t_count = upright ? part_.height : part_.width;
-  const double s_min = (upright ? part_.x : part_.y) - kMargin_px;
-  const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
+  const double s_min = (upright ? part_.x : part_.y) - margin_px_;
+  const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + margin_px_;
   const double vt = upright ? vy_ : vx_;
   const double vs = upright ? vx_ : vy_;
   // Range of s of the sector's pixels, by step.
@@ -84,7 +85,7 @@ void SectorPlan::add(bool upright, bool forward) {
     const double q = t * vw_ - vt;  // times vw
     if ((q >= 0) != forward || std::abs(q) <= kNearest_px * vw_ || q == 0) continue;
     // |s vw - vs| <= |q| + margin
-    const double half = std::abs(q) + 2 * kMargin_px * vw_;
+    const double half = std::abs(q) + 2 * margin_px_ * vw_;
     double low = s_min;
     double high = s_max;
     if (vw_ > 0) {
@@ -195,9 +196,9 @@ SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
   out.a1 = glm::dot(step, up_);
   out.b0 = glm::dot(begin, out.azimuth);
   out.b1 = glm::dot(step, out.azimuth);
-  // Steps at which the line is in the drawn part, with a margin of a pixel.
-  const double s_min = (sector.upright ? part_.x : part_.y) - kMargin_px;
-  const double s_max = (sector.upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
+  // Steps at which the line is in the drawn part, with a margin.
+  const double s_min = (sector.upright ? part_.x : part_.y) - margin_px_;
+  const double s_max = (sector.upright ? part_.x + part_.width : part_.y + part_.height) + margin_px_;
   double low = 0;
   double high = sector.steps - 1;
   if (lean != 0) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "vpe/core/view.h"
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 namespace vpe::voxel {
 
@@ -58,8 +58,8 @@ struct SectorLine {
 // Divides one image into sectors. Immutable; any thread may read it.
 class SectorPlan {
  public:
-  // The view must be perspective; `up` is the unit vertical at the camera. spacing_px in (0, 1]: smaller finds
-  // narrower ridges and makes more columns; 1 gives each pixel samples at most half a pixel away.
+  // The view must be perspective; `up` is the unit vertical at the camera. spacing_px > 0: smaller finds narrower ridges and makes
+  // more columns; 1 gives each pixel samples at most half a pixel away. A sector may have more rows than lines.
   SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px);
 
   const std::vector<ViewSector>& sectors() const { return sectors_; }
@@ -112,6 +112,7 @@ class SectorPlan {
   double vy_;
   double vw_;
   double spacing_;
+  double margin_px_;
   std::vector<ViewSector> sectors_;
   int index_[2][2] = {{-1, -1}, {-1, -1}};
 };

@@ -79,6 +79,10 @@ void ImagePainter::change_planet(std::shared_ptr<const paging::PlanetFile> plane
   failures_.clear();
 }
 
+double ImagePainter::level_range_m(const core::DrawRequest& request, double post_px) const {
+  return root_range(*planet_, request) / post_px;
+}
+
 void ImagePainter::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;
@@ -94,8 +98,8 @@ void ImagePainter::set_shading(const core::DrawRequest& request) {
 
 std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
                                  std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted,
-                                 base::ThreadPool& pool, Reading* reading,
-                                 std::span<const PixelNormal> normals) {
+                                 base::ThreadPool& pool, Reading* reading, std::span<const PixelNormal> normals,
+                                 double post_px) {
   set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
@@ -106,7 +110,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.rays = ray_rows(request.view);
   job.radius_m = planet_->radius_m();
   job.focal_px = rays_per_radian(request);
-  job.root_range_m = root_range(*planet_, request);
+  job.root_range_m = level_range_m(request, post_px);
   job.posts_side = planet_->meta().tile.posts();
   job.by_point = by_point(shading_);
   job.one_colour = is_one_colour(shading_, *planet_);

@@ -64,11 +64,18 @@ class ImagePainter {
     std::string failure_of_points = {};   // out: why ground could not be coloured pixel by pixel, or ""
   };
   //
+  // Posts and texels are nominally at most post_px pixels wide. Smaller: sharper where the ground is seen at a grazing angle;
+  // larger: blurred.
+  //
   // With `normals`, an entry for each pixel or empty, light, slope and aspect follow from these where they have a share. Flat
   // shading does not use them.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted, base::ThreadPool& pool,
-                     Reading* reading = nullptr, std::span<const PixelNormal> normals = {});
+                     Reading* reading = nullptr, std::span<const PixelNormal> normals = {}, double post_px = 1);
+
+  // Returns the range of ground whose posts of level 0 are post_px pixels wide. Level n is painted from 2^-n times this range to
+  // half of that.
+  double level_range_m(const core::DrawRequest& request, double post_px) const;
 
   // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given
   // ranges. `downsampled` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and

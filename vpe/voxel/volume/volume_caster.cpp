@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vpe/voxel/volume/pixel_lines.h"
+#include "vpe/voxel/columns/pixel_lines.h"
 #include "vpe/voxel/volume/pixel_rays.h"
 
 namespace vpe::voxel {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tests/bench/ray_figures.h"
+#include "tests/bench/figures/ray_figures.h"
 #include "vpe/voxel/cast/view_sector.h"
 
 namespace bench {

@@ -2,19 +2,19 @@
 #include <cmath>
 #include <limits>
 
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 // One binary for every x86-64: this file is compiled once for each of these (the last is the baseline).
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "vpe/voxel/cast/column_kernel.cpp"
+#define HWY_TARGET_INCLUDE "vpe/voxel/columns/column_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 // clang-format on
 
-#include "vpe/voxel/cast/column_expand-inl.h"
-#include "vpe/voxel/cast/column_steps-inl.h"
+#include "vpe/voxel/columns/column_expand-inl.h"
+#include "vpe/voxel/columns/column_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {

@@ -14,12 +14,12 @@
 // clang-format on
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 
-#include "vpe/voxel/cast/column_lines-inl.h"
-#include "vpe/voxel/cast/column_paths-inl.h"
-#include "vpe/voxel/cast/column_rows-inl.h"
+#include "vpe/voxel/columns/column_lines-inl.h"
+#include "vpe/voxel/columns/column_paths-inl.h"
+#include "vpe/voxel/columns/column_rows-inl.h"
+#include "vpe/voxel/columns/column_scatter-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -345,9 +345,9 @@ class HorizonWalk {
       // From the event, which is nearer to the top row: from the first row of a run that begins straight below
       // the camera the difference of two large numbers would be left.
       at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
-      scatter(group_.gain, rises, top, gain);
+      scatter(d, group_.gain, lane0_, rises, top, gain);
     }
-    scatter(group_.start, lanes, top, at_top);
+    scatter(d, group_.start, lane0_, lanes, top, at_top);
     row_ = hn::IfThenElse(lanes, rows, row_);
     update_slope();
   }
@@ -359,31 +359,6 @@ class HorizonWalk {
 
   // Keeps a quotient of two zeros from being NaN.
   static V smallest_divisor() { return hn::Set(D(), T(1e-30)); }
-
-  // Stores a value for each lane at a row of its own.
-  void scatter(float* to, M lanes, V at_row, V values) const {
-    const D d;
-#if HWY_TARGET <= HWY_AVX3
-    if constexpr (sizeof(T) == 4) {
-      const __m512i row = _mm512_cvttps_epi32(at_row.raw);
-      const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-      _mm512_mask_i32scatter_ps(to, lanes.raw, _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane), values.raw,
-                                4);
-      return;
-    }
-#endif
-    alignas(64) T rows[kMaxLanes];
-    alignas(64) T all[kMaxLanes];
-    hn::Store(at_row, d, rows);
-    hn::Store(values, d, all);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, lanes, bits);
-    for (unsigned left = bits[0]; left != 0; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      to[static_cast<std::size_t>(rows[k]) * kMaxLanes + static_cast<std::size_t>(lane0_) + k] =
-          static_cast<float>(all[k]);
-    }
-  }
 
   int lane0_;
   PathReader<D> reader_;

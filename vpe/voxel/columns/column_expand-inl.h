@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vpe/voxel/cast/column_rows-inl.h"
+#include "vpe/voxel/columns/column_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -84,6 +84,10 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
       from = hn::IfThenElse(begins, slope, from);
       hn::Store(zero, d, starts);
       hn::Store(zero, d, gains);
+    }
+    if (rows.has_ranges) {
+      put(r, hn::IfThenElse(hn::Lt(row, resolved), start, sky));
+      continue;
     }
     const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
     V length;

@@ -1,4 +1,4 @@
-#include "tests/bench/ray_figures_edges.h"
+#include "tests/bench/figures/ray_figures_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include "vpe/voxel/cast/column_lines-inl.h"
-#include "vpe/voxel/cast/column_paths-inl.h"
+#include "vpe/voxel/columns/column_lines-inl.h"
+#include "vpe/voxel/columns/column_paths-inl.h"
 
 namespace bench {
 

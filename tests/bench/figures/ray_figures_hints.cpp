@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tests/bench/ray_figures.h"
-#include "tests/bench/ray_figures_samples.h"
+#include "tests/bench/figures/ray_figures.h"
+#include "tests/bench/figures/ray_figures_samples.h"
 
 namespace bench {
 

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "tests/bench/ray_figures.h"
+#include "tests/bench/figures/ray_figures.h"
 #include "vpe/base/nice_ticks.h"
 #include "vpe/report/page.h"
 

@@ -13,7 +13,7 @@
 #include <hwy/contrib/math/math-inl.h>
 // clang-format on
 
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {

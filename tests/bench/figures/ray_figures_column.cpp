@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "tests/bench/ray_figures.h"
-#include "tests/bench/ray_figures_edges.h"
+#include "tests/bench/figures/ray_figures.h"
+#include "tests/bench/figures/ray_figures_edges.h"
 
 namespace bench {
 

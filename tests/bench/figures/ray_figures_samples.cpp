@@ -1,4 +1,4 @@
-#include "tests/bench/ray_figures_samples.h"
+#include "tests/bench/figures/ray_figures_samples.h"
 
 #include <algorithm>
 #include <cmath>

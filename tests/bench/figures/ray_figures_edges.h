@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "tests/bench/ray_figures.h"
+#include "tests/bench/figures/ray_figures.h"
 #include "vpe/voxel/cast/column_walk.h"
 
 namespace bench {

@@ -5,7 +5,7 @@
 
 #include "mars/geodesy/sphere.h"
 #include "paging/surface/section.h"
-#include "tests/bench/ray_figures.h"
+#include "tests/bench/figures/ray_figures.h"
 
 namespace bench {
 

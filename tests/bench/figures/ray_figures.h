@@ -139,5 +139,7 @@ std::string draw_footprint(const Scene& scene, const std::string& file);
 std::string draw_column(const Scene& scene, const std::string& file);
 std::string draw_sectors(const Scene& scene, const std::string& file);
 std::string draw_hints(const Scene& scene, const std::string& file);
+std::string draw_discrete(const Scene& scene, const std::string& file);
+std::string draw_sticks(const Scene& scene, const std::string& file);
 
 }  // namespace bench

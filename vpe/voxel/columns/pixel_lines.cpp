@@ -1,4 +1,4 @@
-#include "vpe/voxel/volume/pixel_lines.h"
+#include "vpe/voxel/columns/pixel_lines.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Computes the straight paths of a group's columns through a height grid.
 //
-// Part of column_kernel.cpp: the first step of walk_grid(), before column_steps-inl.h.
+// Part of column_kernel.cpp and discrete_kernel.cpp: the first step of walk_grid(), before column_steps-inl.h.
 #if defined(VPE_VOXEL_COLUMN_PATHS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_PATHS_INL_H_
 #undef VPE_VOXEL_COLUMN_PATHS_INL_H_
@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 #include <hwy/highway.h>
 
@@ -56,7 +56,8 @@ void cut(double p, double q, double n, double& from, double& to) {
   to = std::min(to, std::max(a, b));
 }
 
-void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const ColumnGroup& group, Paths& out) {
+inline void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const ColumnGroup& group,
+                       Paths& out) {
   const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
   const double n = f.intervals;
   for (int lane = 0; lane < kMaxLanes; ++lane) {

@@ -1,4 +1,4 @@
-#include "vpe/voxel/cast/height_grid.h"
+#include "vpe/voxel/columns/height_grid.h"
 
 #include <algorithm>
 #include <limits>

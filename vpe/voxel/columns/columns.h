@@ -25,7 +25,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
-#include "vpe/voxel/cast/height_grid.h"
+#include "vpe/voxel/columns/height_grid.h"
 
 namespace vpe::voxel {
 
@@ -49,6 +49,8 @@ struct Rows {
   const float* length = nullptr;        // sqrt(1 + slope^2); not for kSector
   double first_elevation = 0;           // of row 0, radians
   double elevation_step = 0;            // radians
+  // ColumnGroup::start holds ranges from the camera, each for all rows of its run, as walk_grid_discretely() stores them.
+  bool has_ranges = false;
 };
 
 // Describes the camera of all columns. Vectors are body-fixed.

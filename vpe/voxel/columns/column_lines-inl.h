@@ -14,7 +14,7 @@
 
 #include <algorithm>
 
-#include "vpe/voxel/cast/columns.h"
+#include "vpe/voxel/columns/columns.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {

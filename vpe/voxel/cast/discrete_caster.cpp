@@ -1,0 +1,220 @@
+#include "vpe/voxel/cast/discrete_caster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "vpe/voxel/cast/sector_batch.h"
+#include "vpe/voxel/cast/view_sector.h"
+#include "vpe/voxel/columns/pixel_lines.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+constexpr int kNearestRows = 32;
+
+std::size_t index_of(int row, int width, int x) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+// Copies the nearest samples to the rays of an image's rows.
+class NearestSamples {
+ public:
+  NearestSamples(const SectorPlan& plan, const SectorSamples& samples, const core::SubRectangle& part, int rays)
+      : plan_(plan), samples_(samples), part_(part), rays_(rays) {}
+
+  // Sets the range of each pixel of one row of rays, counted from the top of the drawn part.
+  void get(int row, float* out) const {
+    const int begin = first_upright(row);
+    int end = begin;
+    while (end < part_.width && side(end, row).upright) ++end;
+    beside(row, 0, begin, out);
+    upright(row, begin, end, out);
+    beside(row, end, part_.width, out);
+  }
+
+ private:
+  double x_of(int x) const { return rays_ * (part_.x + x + 0.5); }
+  // Returns the height of a pixel's centre; all rays of a pixel belong to one sector.
+  double middle_of(int row) const { return rays_ * (part_.y + row / rays_ + 0.5); }
+  SectorPlan::Side side(int x, int row) const { return plan_.side_of(x_of(x), middle_of(row)); }
+
+  // Returns the first pixel of a row in an upright sector, or where the vanishing point lies if there is none.
+  int first_upright(int row) const {
+    const int middle = rays_ * (row / rays_) + rays_ / 2;
+    const SectorPlan::Span span = plan_.upright_span(std::min(middle, rays_ * part_.height - 1));
+    int x = std::clamp(span.begin / rays_ - 2, 0, part_.width);
+    const auto is_before = [&] {
+      const SectorPlan::Side at = side(x, row);
+      return !at.upright && !at.forward;
+    };
+    while (x < part_.width && is_before()) ++x;
+    return x;
+  }
+
+  const float* samples_of(const ViewSector& sector) const {
+    return samples_[static_cast<std::size_t>(&sector - plan_.sectors().data())].data();
+  }
+
+  void upright(int row, int begin, int end, float* out) const {
+    if (begin >= end) return;
+    const ViewSector* sector = plan_.sector_of(side(begin, row));
+    if (sector == nullptr) return none(begin, end, out);
+    const int step = std::clamp(rays_ * part_.y + row - sector->first_step, 0, sector->steps - 1);
+    const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
+    const double first = (map.scale * x_of(0) + map.shift - sector->first_line) / sector->spacing + 0.5;
+    const double rate = map.scale * rays_ / sector->spacing;
+    const float* const from = samples_of(*sector) + std::ptrdiff_t{step} * sector->lines;
+    const double last = sector->lines - 1;
+    for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(std::clamp(first + rate * x, 0.0, last))];
+  }
+
+  void beside(int row, int begin, int end, float* out) const {
+    if (begin >= end) return;
+    const ViewSector* sector = plan_.sector_of(side(begin, row));
+    if (sector == nullptr) return none(begin, end, out);
+    const float* const from = samples_of(*sector);
+    const double y = rays_ * part_.y + row + 0.5 - sector->origin;
+    for (int x = begin; x < end; ++x) {
+      const int step = std::clamp(rays_ * (part_.x + x) + rays_ / 2 - sector->first_step, 0, sector->steps - 1);
+      const auto k = static_cast<std::size_t>(step);
+      const double line =
+          static_cast<double>(sector->line_scale[k]) * y + static_cast<double>(sector->line_shift[k]) + 0.5;
+      out[x] = from[std::ptrdiff_t{step} * sector->lines +
+                    static_cast<int>(std::clamp(line, 0.0, sector->lines - 1.0))];
+    }
+  }
+
+  static void none(int begin, int end, float* out) {
+    std::fill(out + begin, out + end, std::numeric_limits<float>::infinity());
+  }
+
+  const SectorPlan& plan_;
+  const SectorSamples& samples_;
+  core::SubRectangle part_;
+  int rays_;
+};
+
+void cast_sectors(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
+                  base::ThreadPool& pool, SectorSamples& samples, std::span<float> range_m) {
+  const core::View fine = with_finer_pixels(view, rays);
+  const SectorPlan plan(fine, walk.camera().up, rays);
+  samples.resize(std::max(samples.size(), plan.sectors().size()));
+  std::vector<ColumnBatch> batches;
+  for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
+    const ViewSector& sector = plan.sectors()[f];
+    batches.push_back(sector_batch(plan, sector, {0, sector.lines, 0, sector.steps}, samples[f]));
+    batches.back().rows.has_ranges = true;
+  }
+  cast_columns(batches, walk, scratches, pool);
+  const core::SubRectangle part = core::drawn_part(view);
+  const NearestSamples nearest(plan, samples, part, rays);
+  const int rows = rays * part.height;
+  pool.run(static_cast<std::size_t>((rows + kNearestRows - 1) / kNearestRows), [&](std::size_t task) {
+    const int first = static_cast<int>(task) * kNearestRows;
+    for (int row = first; row < std::min(first + kNearestRows, rows); ++row)
+      nearest.get(row, range_m.data() + index_of(row, part.width, 0));
+  });
+}
+
+void cast_lines(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool,
+                SectorSamples& samples_of_lines, std::span<float> range_m) {
+  const core::SubRectangle part = core::drawn_part(view);
+  const mars::Axes& axes = view.camera.axes;
+  const glm::dvec3& up = walk.camera().up;
+  const PixelLines lines(part.width, part.height, {glm::dot(up, axes.right), -glm::dot(up, axes.up)});
+  const double focal = core::focal_px(view);
+  const glm::dvec2 centre = glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
+  const auto ray = [&](const glm::dvec2& xy) {
+    const glm::dvec2 at = glm::dvec2(part.x, part.y) + xy - centre;
+    return at.x * axes.right - at.y * axes.up + focal * axes.forward;
+  };
+  std::vector<std::vector<PixelLines::Pixel>> pixels(static_cast<std::size_t>(lines.count()));
+  std::size_t longest = 0;
+  for (int n = 0; n < lines.count(); ++n) {
+    lines.get(n, pixels[static_cast<std::size_t>(n)]);
+    longest = std::max(longest, pixels[static_cast<std::size_t>(n)].size());
+  }
+  const auto of_pixel = [](const PixelLines::Pixel& p) { return glm::dvec2(p.x + 0.5, p.y + 0.5); };
+  const glm::dvec2 first_step = [&] {
+    for (const auto& line : pixels) {
+      if (line.size() == longest && longest > 1)
+        return (of_pixel(line.back()) - of_pixel(line.front())) / static_cast<double>(longest - 1);
+    }
+    return glm::dvec2(0, -1);
+  }();
+  // Rays of a line are even along it, which its pixels are within half a pixel.
+  struct Column {
+    glm::dvec3 azimuth;
+    double a0, a1, b0, b1;
+  };
+  std::vector<Column> columns;
+  for (const auto& line : pixels) {
+    const double last = static_cast<double>(line.size()) - 1;
+    const glm::dvec2 from = of_pixel(line.front());
+    const glm::dvec2 step = line.size() > 1 ? (of_pixel(line.back()) - from) / last : first_step;
+    const glm::dvec3 begin = ray(from);
+    const glm::dvec3 per_row = step.x * axes.right - step.y * axes.up;
+    const glm::dvec3 middle = begin + 0.5 * last * per_row;
+    const glm::dvec3 level = middle - glm::dot(middle, up) * up;
+    const glm::dvec3 azimuth = glm::normalize(level);
+    const Column c{azimuth, glm::dot(begin, up), glm::dot(per_row, up), glm::dot(begin, azimuth),
+                   glm::dot(per_row, azimuth)};
+    constexpr double kLeast = 1e-3;  // of the focal length
+    if (!(c.b0 > kLeast * focal) || !(c.b0 + last * c.b1 > kLeast * focal))
+      throw std::runtime_error(
+          "rays.columns=lines takes each line of pixels as one vertical plane, and here lines pass the point straight below or "
+          "above the camera: use --set rays.columns=sectors");
+    columns.push_back(c);
+  }
+  samples_of_lines.resize(std::max<std::size_t>(samples_of_lines.size(), 1));
+  std::vector<float>& samples = samples_of_lines.front();
+  const std::size_t needed = longest * pixels.size();
+  if (samples.size() < needed) samples.resize(needed);
+  ColumnBatch batch;
+  batch.rows.kind = RowKind::kSector;
+  batch.rows.count = static_cast<int>(longest);
+  batch.rows.has_ranges = true;
+  batch.columns = lines.count();
+  batch.stride = lines.count();
+  batch.out = samples.data();
+  batch.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+    const Column& c = columns[static_cast<std::size_t>(column)];
+    azimuth = c.azimuth;
+    group.sector_a0[lane] = c.a0;
+    group.sector_a1[lane] = c.a1;
+    group.sector_b0[lane] = c.b0;
+    group.sector_b1[lane] = c.b1;
+    group.row_end[lane] = static_cast<float>(pixels[static_cast<std::size_t>(column)].size());
+  };
+  cast_columns({&batch, 1}, walk, scratches, pool);
+  for (std::size_t n = 0; n < pixels.size(); ++n) {
+    for (std::size_t r = 0; r < pixels[n].size(); ++r)
+      range_m[index_of(pixels[n][r].y, part.width, pixels[n][r].x)] = samples[r * pixels.size() + n];
+  }
+}
+
+}  // namespace
+
+core::View with_finer_pixels(core::View view, int rays) {
+  view.width *= rays;
+  view.height *= rays;
+  view.principal_offset_px *= static_cast<double>(rays);
+  view.part = {view.part.x * rays, view.part.y * rays, view.part.width * rays, view.part.height * rays};
+  return view;
+}
+
+void cast_discretely(const core::View& view, const ColumnWalk& walk, const DiscreteForm& form,
+                     ScratchPool& scratches, base::ThreadPool& pool, SectorSamples& samples,
+                     std::span<float> range_m) {
+  if (form.columns == core::RayColumns::kSectors)
+    return cast_sectors(view, walk, form.rays, scratches, pool, samples, range_m);
+  if (form.rays != 1) throw std::invalid_argument("lines of pixels have one ray a pixel");
+  cast_lines(view, walk, scratches, pool, samples, range_m);
+}
+
+}  // namespace vpe::voxel
