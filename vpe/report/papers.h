@@ -53,6 +53,40 @@ struct PublishedTerrainTimes {
 };
 inline constexpr PublishedTerrainTimes kWan1999Times;
 
+// Cohen-Or, Rich, Lerner, Shenkar (1996), Table 1: images a second on a number of processors, of which one hands out columns. The
+// one row of three whose digits are legible in the text at hand, without decimal points: "146 110 54 25 11 036". They are set so
+// that the first is the pitch and the others go by the processors that draw, as the text says.
+struct PublishedRate {
+  int processors = 0;
+  double images_per_s = 0;
+};
+inline constexpr std::array<PublishedRate, 5> kCohenOr1996Rates{
+    {{2, 0.36}, {4, 1.1}, {8, 2.5}, {16, 5.4}, {32, 11.0}}};
+inline constexpr double kCohenOr1996Pitch_deg = 14.6;  // below the horizon
+
+// Section 3.3 of the same paper: the database, 4 bytes a voxel and a third more for coarser levels.
+struct PublishedDatabase {
+  const char* name;
+  double finest_voxels = 0;
+  double bytes = 0;
+};
+inline constexpr std::array<PublishedDatabase, 3> kCohenOr1996Database{
+    {{"terrain of 55 x 80 km, 1 m", 4.4e9, 23.5e9},
+     {"40 target areas of 2.5, 1.25 and 0.625 km, 0.5 to 0.125 m", 3e9, 12e9},
+     {"all", 7.4e9, 35e9}}};
+
+// Hitchner (1992), sections 2.2 to 2.5: figures of merit.
+struct PublishedEnvironment {
+  int panorama_width = 6000;
+  int panorama_height = 2000;
+  int panorama_facets = 8;
+  double panorama_s = 600;     // "about 10 minutes"
+  double overlook_per_s = 74;  // "close to" the rate at which the screen is refreshed
+  double vertex_bytes = 36;    // with a normal, a colour and places in a texture
+  double most_vertices = 9e5;  // of the largest terrain
+};
+inline constexpr PublishedEnvironment kHitchner1992;
+
 // Holds a published table with one time for each size of something.
 struct PublishedTimes {
   std::string paper;

@@ -223,6 +223,34 @@ TEST_F(Report, PapersPutBothSideBySide) {
   EXPECT_LT(difference["lit"].get<double>(), 0.031);
   EXPECT_GT(difference["lit"].get<double>(), 0);
 
+  const json& environment = report["environment-figures"];
+  expect_csv("out/environment-figures.csv", environment);
+  EXPECT_EQ(environment["rows"].size(), 4U);
+  for (const json& quantity : environment["rows"]) EXPECT_GT(quantity["here_to_published"].get<double>(), 0);
+  EXPECT_EQ(vpe::core::read_image(dir_ / "out/environment-panorama.png").width, 1504);
+  EXPECT_EQ(vpe::core::read_image(dir_ / "out/environment-overlook.png").width, 1280);
+  const json& flythrough = report["flythrough-table-1"];
+  expect_csv("out/flythrough-table-1.csv", flythrough);
+  EXPECT_EQ(flythrough["rows"].size(), 3U);
+  const json known = row(flythrough, {{"pitch_deg", 14.6}});
+  EXPECT_EQ(known["published_32p_per_s"], 11.0);
+  EXPECT_EQ(known["published_2p_per_s"], 0.36);
+  EXPECT_GT(known["threads_1_per_s"].get<double>(), 0);
+  EXPECT_TRUE(row(flythrough, {{"pitch_deg", 30}})["published_8p_per_s"].is_null());
+  const json& growth = report["flythrough-growth"];
+  expect_csv("out/flythrough-growth.csv", growth);
+  EXPECT_NEAR(row(growth, {{"workers", 31}})["published_share"].get<double>(), 0.986, 1e-3);
+  EXPECT_EQ(row(growth, {{"workers", 1}})["ratio_of_ratios"], 1);
+  const json& ratios = report["flythrough-ratio"];
+  expect_csv("out/flythrough-ratio.csv", ratios);
+  EXPECT_EQ(row(ratios, {{"ratio_px", 1}})["time_to_ratio_1"], 1);
+  EXPECT_EQ(report["flythrough-options"]["rows"].size(), 7U);
+  for (const json& part : report["flythrough-database"]["rows"])
+    EXPECT_GT(part["here_to_published"].get<double>(), 0);
+  for (const char* part : {"discrete", "blended", "vertical", "exact", "difference"})
+    EXPECT_EQ(vpe::core::read_image(dir_ / "out" / ("flythrough-" + std::string(part) + ".png")).width, 320)
+        << part;
+
   const json& terrain = report["terrain-table-1"];
   expect_csv("out/terrain-table-1.csv", terrain);
   ASSERT_GE(terrain["rows"].size(), 5U);

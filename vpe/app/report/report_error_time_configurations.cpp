@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
+#include "vpe/app/panorama/panorama_requests.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/report/report_error_time_panoramas.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/resampling.h"

@@ -14,6 +14,8 @@
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/report/papers/papers_environment.h"
+#include "vpe/app/report/papers/papers_flythrough.h"
 #include "vpe/app/report/papers/papers_relief.h"
 #include "vpe/app/report/papers/papers_stereo.h"
 #include "vpe/app/report/papers/papers_terrain.h"
@@ -56,6 +58,18 @@ StereoPaperPlan make_plan(const PapersArguments& arguments, const Common& common
   return plan;
 }
 
+EnvironmentPaperPlan make_environment_plan(const PapersArguments& arguments, const StereoPaperPlan& stereo,
+                                           const std::shared_ptr<const paging::PlanetFile>& planet) {
+  EnvironmentPaperPlan plan;
+  plan.pose = resolve(parse_pose("--pose", arguments.pose, arguments.height_m), planet, 1);
+  plan.sun = stereo.sun;
+  plan.threads = stereo.threads;
+  plan.rounds = stereo.rounds;
+  plan.is_short = arguments.brief;
+  plan.memory_bytes = stereo.memory_bytes;
+  return plan;
+}
+
 report::Page report_papers(const PapersArguments& arguments, const Common& common) {
   const std::filesystem::path folder = arguments.folder;
   check_report_folder(folder);
@@ -64,6 +78,9 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   const auto planet = open_planet(arguments.planet, common);
   const StereoPaperPlan plan = make_plan(arguments, common, planet);
   const TerrainPaperPlan terrain_plan{plan.threads, plan.rounds, arguments.brief};
+  const EnvironmentPaperPlan environment_plan = make_environment_plan(arguments, plan, planet);
+  const FlythroughPaperPlan flythrough_plan{arguments.fov_deg, plan.threads, plan.rounds, arguments.brief,
+                                            plan.memory_bytes};
   const ReliefPaperPlan relief_plan{.rounds = plan.rounds, .is_short = arguments.brief};
   ProgressLine line(common.quiet);
   int done = 0;
@@ -77,20 +94,31 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
     line.show("terrain", static_cast<double>(done++) / count_steps(terrain_plan));
   });
   done = 0;
+  const FlythroughPaper flythrough = measure_flythrough_paper(flythrough_plan, folder, [&] {
+    InterruptGuard::check();
+    line.show("flythrough", static_cast<double>(done++) / count_steps(flythrough_plan));
+  });
+  done = 0;
+  const EnvironmentPaper environment = measure_environment_paper(environment_plan, planet, folder, [&] {
+    InterruptGuard::check();
+    line.show("environment", static_cast<double>(done++) / count_environment_steps(environment_plan));
+  });
+  done = 0;
   const ReliefPaper relief = measure_relief_paper(relief_plan, folder, [&] {
     InterruptGuard::check();
     line.show("relief", static_cast<double>(done++) / count_steps(relief_plan));
   });
-  std::vector<report::Table> tables = stereo.tables;
-  tables.insert(tables.end(), terrain.tables.begin(), terrain.tables.end());
-  tables.insert(tables.end(), relief.tables.begin(), relief.tables.end());
+  std::vector<report::Table> tables;
+  for (const auto* own :
+       {&environment.tables, &stereo.tables, &terrain.tables, &flythrough.tables, &relief.tables})
+    tables.insert(tables.end(), own->begin(), own->end());
 
   report::Page page;
   page.title = "Figures of the papers, published and here";
   page.paragraphs = report::to_paragraphs(facts);
-  page.paragraphs.push_back("Stereo: planet " + planet->path() + ", pose " + arguments.pose + ", " +
-                            arguments.size + " pixels.");
-  page.sections = {stereo.section, terrain.section, relief.section};
+  page.paragraphs.push_back("Panorama and stereo: planet " + planet->path() + ", pose " + arguments.pose +
+                            ", " + arguments.size + " pixels in stereo.");
+  page.sections = {environment.section, stereo.section, terrain.section, flythrough.section, relief.section};
   nlohmann::json json{{"run", report::to_json(facts)}, {"load_after", report::load_now()},
                       {"planet", planet->path()},      {"pose", arguments.pose},
                       {"size", arguments.size},        {"eye_base_m", stereo.eye_base_m}};
@@ -119,8 +147,8 @@ void add_report_papers(CLI::App& report, Common& common) {
   CLI::App* command = add_command(
       report, "papers",
       "Measure what the papers that vpe follows have published, and put both side by side; so "
-      "far the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, Table 1, Figs 6 and 7 and the times "
-      "of section 7 of Wan and others (1999), terrain as a volume, and the table and Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
+      "far the figures of merit of Hitchner (1992), the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, Table 1, Figs 6 and 7 and the times "
+      "of section 7 of Wan and others (1999), terrain as a volume, Table 1, the pixel-to-voxel ratio and the database of Cohen-Or and others (1996), flythrough by discrete rays, and the table and Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
       common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command
@@ -148,7 +176,7 @@ void add_report_papers(CLI::App& report, Common& common) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--short", arguments->brief,
-                    "Two rounds on one thread, bilinear relief and 3 rolls only; under a minute");
+                    "Two rounds on one thread, bilinear relief, 3 rolls and 3 ratios only; under a minute");
   add_examples(*command, {{"under a minute", "vpe report papers --short -o papers"},
                           {"images of today's size", "vpe report papers mars.vpe --size 1920x1080 -o papers"}});
   command->callback([arguments, &common] { report_papers(*arguments, common); });

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "vpe/app/report/fractal_terrain.h"
+#include "vpe/app/planet/fractal_terrain.h"
 #include "vpe/report/law.h"
 #include "vpe/report/table.h"
 

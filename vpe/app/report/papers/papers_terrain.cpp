@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "vpe/app/report/papers/paper_images.h"
 #include "vpe/app/report/papers/volume_image.h"
 #include "vpe/base/number.h"
 #include "vpe/report/interleaved_timing.h"
@@ -180,25 +181,6 @@ report::Table ratio_table(const TerrainPaperPlan& plan, const PhotographedVolume
   return table;
 }
 
-report::PageImage write_terrain(const std::filesystem::path& folder, const std::string& name,
-                                const std::string& caption, const core::RgbImage& image) {
-  core::write_image(folder / name, image.pixels, image.width, image.height);
-  return {caption, core::encode_png(image.pixels, image.width, image.height, 6)};
-}
-
-core::RgbImage eightfold_difference(const core::RgbImage& a, const core::RgbImage& b) {
-  core::RgbImage image{a.width, a.height, {}};
-  for (std::size_t n = 0; n < a.pixels.size(); ++n) {
-    const auto tone = [](int x, int y) {
-      return static_cast<std::uint8_t>(std::min(255, 8 * std::abs(x - y)));
-    };
-    const base::Rgb& p = a.pixels[n];
-    const base::Rgb& q = b.pixels[n];
-    image.pixels.push_back({tone(p.r, q.r), tone(p.g, q.g), tone(p.b, q.b)});
-  }
-  return image;
-}
-
 }  // namespace
 
 int count_steps(const TerrainPaperPlan& plan) {
@@ -223,13 +205,13 @@ TerrainPaper measure_terrain_paper(const TerrainPaperPlan& plan, const std::file
   base::ThreadPool pool(plan.threads.back());
   const core::RgbImage accurate = draw_volume(scene, terrain_view(0), kAccurate, pool).colours;
   const core::RgbImage approximate = draw_volume(scene, terrain_view(0), kApproximate, pool).colours;
-  paper.section.images = {
-      write_terrain(folder, "terrain-figure-6.png", "Fig. 6: accurate", accurate),
-      write_terrain(folder, "terrain-figure-7.png", "Fig. 7: approximate, boundary cells alone", approximate),
-      write_terrain(folder, "terrain-difference.png", "Difference of both, eightfold",
-                    eightfold_difference(accurate, approximate)),
-      write_terrain(folder, "terrain-roll.png", "A roll of 30 degrees",
-                    draw_volume(scene, terrain_view(30), kAccurate, pool).colours)};
+  paper.section.images = {write_paper_image(folder, "terrain-figure-6.png", "Fig. 6: accurate", accurate),
+                          write_paper_image(folder, "terrain-figure-7.png",
+                                            "Fig. 7: approximate, boundary cells alone", approximate),
+                          write_paper_image(folder, "terrain-difference.png", "Difference of both, eightfold",
+                                            eightfold_difference(accurate, approximate)),
+                          write_paper_image(folder, "terrain-roll.png", "A roll of 30 degrees",
+                                            draw_volume(scene, terrain_view(30), kAccurate, pool).colours)};
   paper.section.tables = paper.tables;
   return paper;
 }

@@ -1,4 +1,4 @@
-#include "vpe/app/report/report_error_time_panoramas.h"
+#include "vpe/app/panorama/panorama_requests.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,21 @@ std::vector<panorama::Piece> pieces_of(const panorama::PanoramaMap& map, const p
   return all;
 }
 
-// Joins the pieces of a map, with ranges if the frames have them.
+}  // namespace
+
+panorama::PanoramaMap cylinder_of(std::int64_t columns) { return plan(columns, 0); }
+
+panorama::PanoramaMap facets_of(int facets, std::int64_t columns) { return plan(columns, facets); }
+
+std::vector<core::DrawRequest> requests_of(const panorama::PanoramaMap& map, const PanoramaView& view) {
+  std::vector<core::DrawRequest> requests;
+  for (const panorama::Piece& piece : pieces_of(map, panorama::viewpoint_of(view.pose, view.radius_m))) {
+    requests.push_back(view.request);
+    requests.back().view = piece.view;
+  }
+  return requests;
+}
+
 core::Frame mosaic(const panorama::PanoramaMap& map, const std::vector<core::Frame>& frames) {
   core::Frame whole = report::blank_frame({static_cast<int>(map.width_px), static_cast<int>(map.height_px)});
   const std::vector<panorama::Piece> pieces = pieces_of(map, {});
@@ -55,21 +69,6 @@ core::Frame mosaic(const panorama::PanoramaMap& map, const std::vector<core::Fra
     }
   }
   return whole;
-}
-
-}  // namespace
-
-panorama::PanoramaMap cylinder_of(std::int64_t columns) { return plan(columns, 0); }
-
-panorama::PanoramaMap facets_of(int facets, std::int64_t columns) { return plan(columns, facets); }
-
-std::vector<core::DrawRequest> requests_of(const panorama::PanoramaMap& map, const PanoramaView& view) {
-  std::vector<core::DrawRequest> requests;
-  for (const panorama::Piece& piece : pieces_of(map, panorama::viewpoint_of(view.pose, view.radius_m))) {
-    requests.push_back(view.request);
-    requests.back().view = piece.view;
-  }
-  return requests;
 }
 
 report::Compose resample(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto) {

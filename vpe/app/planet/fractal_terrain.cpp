@@ -1,4 +1,4 @@
-#include "vpe/app/report/fractal_terrain.h"
+#include "vpe/app/planet/fractal_terrain.h"
 
 #include <chrono>
 #include <cmath>

@@ -23,6 +23,10 @@ struct PanoramaView {
 // Returns the requests that draw a map: its pieces from left to right.
 std::vector<core::DrawRequest> requests_of(const panorama::PanoramaMap& map, const PanoramaView& view);
 
+// Joins the pieces of a map that requests_of() has listed, with ranges if the frames have them. Throws std::invalid_argument for
+// another number of frames.
+core::Frame mosaic(const panorama::PanoramaMap& map, const std::vector<core::Frame>& frames);
+
 // Makes an image of `onto`: each pixel is the nearest one of `map` in its direction, with its range. A map
 // equal to `onto` is taken unchanged.
 report::Compose resample(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto);
