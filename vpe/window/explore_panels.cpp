@@ -233,7 +233,9 @@ void ExploreWindow::draw_tabs() {
     ImGui::EndTabItem();
   }
   if (tab("Look")) {
-    if (const std::string error = appearance_.draw(session_, drawn(), widgets_); !error.empty())
+    if (const std::string error =
+            appearance_.draw(session_, drawn(), setup_.planet->meta().finest_image_level >= 0, widgets_);
+        !error.empty())
       show_message(error, true);
     ImGui::EndTabItem();
   }

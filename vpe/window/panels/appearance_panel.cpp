@@ -72,8 +72,10 @@ void AppearancePanel::set(const std::string& key, const std::string& text) {
 
 void AppearancePanel::set(const std::string& key, double value) { set(key, base::format_number(value)); }
 
-std::string AppearancePanel::draw(explore::Session& session, const DrawnImage* drawn, Widgets& widgets) {
+std::string AppearancePanel::draw(explore::Session& session, const DrawnImage* drawn, bool has_imagery,
+                                  Widgets& widgets) {
   session_ = &session;
+  has_imagery_ = has_imagery;
   widgets_ = &widgets;
   error_.clear();
   begin_part("appearance");
@@ -86,6 +88,7 @@ std::string AppearancePanel::draw(explore::Session& session, const DrawnImage* d
     set("exaggeration", std::round(exaggeration * 10) / 10);
   draw_sun();
   draw_air();
+  draw_imagery();
   if (widgets.header("All settings", false)) {
     SettingRows rows(session, drawn, widgets);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 11);
@@ -252,6 +255,29 @@ void AppearancePanel::draw_air() {
   if (widgets_->slide("Brightness", gamma, 0.5, 3, "%.2f", true, "gamma correction: larger is brighter"))
     set("gamma", std::round(gamma * 100) / 100);
   ImGui::PopItemWidth();
+}
+
+// Draws the stretch of imagery, where the planet has any.
+void AppearancePanel::draw_imagery() {
+  if (!has_imagery_ || !widgets_->header("Stretch of imagery", false)) return;
+  const core::SettingsValues& values = session_->settings().values();
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 11);
+  double low = values.image_low;
+  if (widgets_->slide("Black", low, 0, 255, "%.0f", false,
+                      "value that is shown black; above White: the negative"))
+    set("image.low", std::round(low));
+  double high = values.image_high;
+  if (widgets_->slide("White", high, 0, 255, "%.0f", false, "value that is shown white"))
+    set("image.high", std::round(high));
+  double gamma = values.image_gamma;
+  if (widgets_->slide("Gamma", gamma, 0.1, 10, "%.2f", true, "between both; larger is brighter"))
+    set("image.gamma", std::round(gamma * 100) / 100);
+  ImGui::PopItemWidth();
+  if (!widgets_->button("As stored", "shows the imagery without a stretch")) return;
+  const core::SettingsValues usual;
+  set("image.low", usual.image_low);
+  set("image.high", usual.image_high);
+  set("image.gamma", usual.image_gamma);
 }
 
 }  // namespace vpe::window
