@@ -47,17 +47,20 @@ std::vector<NamedView> views(const bench::RayScene& scene, const RangeCaster& ca
   const mars::LonLat place = mars::lon_lat(scene.middle);
   const double ground = caster.surface().at(scene.middle).height_m;
   std::vector<NamedView> out;
-  const auto add = [&](const char* name, int width, int height, double fov_deg, double pitch_deg) {
+  const auto add = [&](const char* name, int width, int height, double fov_deg, double pitch_deg,
+                       double above_m = 1000) {
     View v;
     v.width = width;
     v.height = height;
     v.fov_deg = fov_deg;
-    v.camera = mars::to_camera({place.lon_deg, place.lat_deg, ground + 1000, 22.5, pitch_deg, 0}, radius);
+    v.camera = mars::to_camera({place.lon_deg, place.lat_deg, ground + above_m, 22.5, pitch_deg, 0}, radius);
     out.push_back({name, v});
   };
   add("500x400, -30", 500, 400, 60, -30);
   add("1920x1080, -10", 1920, 1080, 36, -10);
   add("1920x1080, -45", 1920, 1080, 36, -45);
+  // Voxels are narrower than pixels from here on.
+  add("500x400, -80 from 60 km", 500, 400, 30, -80, 60000);
   add("cylinder 6000x2000", 6000, 2000, 60, 0);
   out.back().view.projection = vpe::core::Projection::kCylinder;
   return out;
@@ -104,7 +107,7 @@ void run(const std::string& dir, int rounds) {
       };
       bench::compare_rounds(v.name + ": exact; discrete, finest tiles", cast({}), cast(discrete(0)), rounds);
       bench::compare_rounds(v.name + ": multires 1; discrete 1", cast({1, 1}), cast(discrete(1)), rounds);
-      for (const double ratio : {0.5, 2.0, 4.0, 8.0})
+      for (const double ratio : {0.25, 0.5, 2.0, 4.0, 8.0})
         bench::compare_rounds(v.name + ": ratio 1; " + std::to_string(ratio), cast(discrete(1)),
                               cast(discrete(ratio)), rounds);
       bench::compare_rounds(v.name + ": 1 ray; 4 rays", cast(discrete(1)), cast(discrete(1, 4)), rounds);

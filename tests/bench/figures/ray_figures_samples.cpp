@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "vpe/voxel/cast/column_batch.h"
 #include "vpe/voxel/cast/facet_finder.h"
 #include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/cast/sector_batch.h"
 
 namespace bench {
 
@@ -25,23 +25,9 @@ voxel::ColumnCamera column_camera(const Scene& scene, const core::View& view) {
 // Casts the columns of a sector. Returns its samples, step by step.
 std::vector<float> cast_sector(const Scene& scene, const voxel::SectorPlan& plan,
                                const voxel::ViewSector& sector, const voxel::ColumnWalk& walk) {
-  std::vector<float> samples(static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines));
-  voxel::ColumnBatch batch;
-  batch.rows.kind = voxel::RowKind::kSector;
-  batch.rows.count = sector.steps;
-  batch.columns = sector.lines;
-  batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
-  batch.out = samples.data() + (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
-  batch.set_column = [&](int column, voxel::ColumnGroup& group, int lane, glm::dvec3& azimuth) {
-    const voxel::SectorLine line = plan.line(sector, column);
-    azimuth = line.azimuth;
-    group.sector_a0[lane] = line.a0;
-    group.sector_a1[lane] = line.a1;
-    group.sector_b0[lane] = line.b0;
-    group.sector_b1[lane] = line.b1;
-    group.row[lane] = static_cast<float>(line.row_begin);
-    group.row_end[lane] = static_cast<float>(line.row_end);
-  };
+  std::vector<float> samples;
+  const voxel::ColumnBatch batch =
+      voxel::sector_batch(plan, sector, {0, sector.lines, 0, sector.steps}, samples);
   voxel::ScratchPool scratches = voxel::make_scratch_pool(scene.caster->store(), 1);
   voxel::cast_columns({&batch, 1}, walk, scratches, *scene.pool);
   return samples;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <ranges>
 #include <set>
 #include <string>
 #include <system_error>
@@ -131,6 +130,13 @@ FlythroughCases make_flythrough_cases(const FlythroughPaperPlan& plan, const Fly
   return cases;
 }
 
+// Returns the published rates in the order of the paper's columns.
+auto most_processors_first() {
+  auto rates = report::kCohenOr1996Rates;
+  std::ranges::reverse(rates);
+  return rates;
+}
+
 // Returns images a second: the rows and columns of the paper, then those of this machine.
 report::Table rate_table(const FlythroughPaperPlan& plan, const FlythroughCases& cases,
                          const std::vector<report::Timing>& timings) {
@@ -138,7 +144,7 @@ report::Table rate_table(const FlythroughPaperPlan& plan, const FlythroughCases&
   table.name = "flythrough-table-1";
   table.caption = "Table 1: images a second, by pitch and processors";
   table.columns = {{"pitch_deg", "below the horizon"}};
-  for (const report::PublishedRate& p : std::views::reverse(report::kCohenOr1996Rates))
+  for (const report::PublishedRate& p : most_processors_first())
     table.columns.push_back({"published_" + std::to_string(p.processors) + "p_per_s",
                              std::to_string(p.processors) + " processors, one of which hands out columns"});
   for (const int threads : plan.threads)
@@ -146,7 +152,7 @@ report::Table rate_table(const FlythroughPaperPlan& plan, const FlythroughCases&
                              "here: " + std::to_string(threads) + " threads (median)"});
   for (std::size_t n = 0; n < kPitches_deg.size(); ++n) {
     std::vector<report::Cell> row{kPitches_deg[n]};
-    for (const report::PublishedRate& p : std::views::reverse(report::kCohenOr1996Rates)) {
+    for (const report::PublishedRate& p : most_processors_first()) {
       row.emplace_back();
       if (n == 0) row.back() = p.images_per_s;
     }
