@@ -275,7 +275,9 @@ FlythroughPaper measure_flythrough_paper(const FlythroughPaperPlan& plan, const 
       "Here: fractal terrain of " + posts + " x " + posts + " posts 5 m apart, " +
           std::to_string(plan.is_short ? 320 : 640) + " x " + std::to_string(plan.is_short ? 240 : 480) +
           " pixels, colours by elevation with light, voxels at most a pixel wide. Only shares and ratios compare. Rounds are "
-          "interleaved."};
+          "interleaved.",
+      "Columns are handed out a task at a time, as in the paper; other load of this machine, which is stated above, lowers the growth. "
+      "Time falls less than the ratio rises because rows of pixels cost as much as steps over voxels (profile of 2026-11-27)."};
   paper.tables = {rate_table(plan, cases, timings), growth_table(plan, cases, timings),
                   voxel_ratio_table(plan, cases, timings), way_table(cases, timings),
                   database_table(scene.build)};
