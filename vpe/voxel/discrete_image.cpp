@@ -99,11 +99,15 @@ std::int64_t paint_discrete(const core::DrawRequest& request, std::span<const fl
   std::int64_t nodata = 0;
   for (int ray = 0; ray < rays; ++ray) {
     // A ray with the range of the one above it shows the same voxel.
-    for (std::size_t n = 0; n < range_m.size(); ++n) {
-      const std::size_t from =
-          (n / row * static_cast<std::size_t>(rays) + static_cast<std::size_t>(ray)) * row + n % row;
-      if (ray > 0) is_other[n] = rays_m[from] != range_m[n] ? 1 : 0;
-      range_m[n] = rays_m[from];
+    for (std::size_t y = 0; y * row < range_m.size(); ++y) {
+      const float* const from =
+          rays_m.data() + (y * static_cast<std::size_t>(rays) + static_cast<std::size_t>(ray)) * row;
+      float* const to = range_m.data() + y * row;
+      std::uint8_t* const other = is_other.data() + y * row;
+      for (std::size_t x = 0; x < row; ++x) {
+        other[x] = ray == 0 || from[x] != to[x] ? 1 : 0;
+        to[x] = from[x];
+      }
     }
     of_ray.view.principal_offset_px.y = request.view.principal_offset_px.y - ((ray + 0.5) / rays - 0.5);
     const std::int64_t painted = ray_painter.paint(of_ray, range_m, is_other, colour);

@@ -27,33 +27,40 @@ class NearestSamples {
   NearestSamples(const SectorPlan& plan, const SectorSamples& samples, const core::SubRectangle& part, int rays)
       : plan_(plan), samples_(samples), part_(part), rays_(rays) {}
 
-  // Sets the range of each pixel of one row of rays, counted from the top of the drawn part.
-  void get(int row, float* out) const {
-    const int begin = first_upright(row);
-    int end = begin;
-    while (end < part_.width && side(end, row).upright) ++end;
-    beside(row, 0, begin, out);
-    upright(row, begin, end, out);
-    beside(row, end, part_.width, out);
+  // Sets the ranges of all rays of one row of pixels, counted from the top of the drawn part: a row for each ray.
+  void get(int pixel_row, float* out) const {
+    const SectorPlan::Span span = upright_pixels(pixel_row);
+    for (int ray = 0; ray < rays_; ++ray, out += part_.width) {
+      const int row = rays_ * pixel_row + ray;
+      beside(row, 0, span.begin, out);
+      upright(row, span.begin, span.end, out);
+      beside(row, span.end, part_.width, out);
+    }
   }
 
  private:
   double x_of(int x) const { return rays_ * (part_.x + x + 0.5); }
-  // Returns the height of a pixel's centre; all rays of a pixel belong to one sector.
-  double middle_of(int row) const { return rays_ * (part_.y + row / rays_ + 0.5); }
-  SectorPlan::Side side(int x, int row) const { return plan_.side_of(x_of(x), middle_of(row)); }
+  // Returns the side of V of a pixel's centre; all rays of the pixel belong to its sector.
+  SectorPlan::Side side(int x, int pixel_row) const {
+    return plan_.side_of(x_of(x), rays_ * (part_.y + pixel_row + 0.5));
+  }
 
-  // Returns the first pixel of a row in an upright sector, or where the vanishing point lies if there is none.
-  int first_upright(int row) const {
-    const int middle = rays_ * (row / rays_) + rays_ / 2;
-    const SectorPlan::Span span = plan_.upright_span(std::min(middle, rays_ * part_.height - 1));
-    int x = std::clamp(span.begin / rays_ - 2, 0, part_.width);
-    const auto is_before = [&] {
-      const SectorPlan::Side at = side(x, row);
+  // Returns the pixels of a row in an upright sector; empty at the vanishing point if there is none.
+  SectorPlan::Span upright_pixels(int pixel_row) const {
+    // Those of the ray at or below the centre are at most a pixel off.
+    const SectorPlan::Span near =
+        plan_.upright_span(std::min(rays_ * pixel_row + rays_ / 2, rays_ * part_.height - 1));
+    const auto is_before = [&](int x) {
+      const SectorPlan::Side at = side(x, pixel_row);
       return !at.upright && !at.forward;
     };
-    while (x < part_.width && is_before()) ++x;
-    return x;
+    SectorPlan::Span span{std::clamp(near.begin / rays_, 0, part_.width), 0};
+    while (span.begin > 0 && !is_before(span.begin - 1)) --span.begin;
+    while (span.begin < part_.width && is_before(span.begin)) ++span.begin;
+    span.end = std::clamp(near.end / rays_, span.begin, part_.width);
+    while (span.end > span.begin && !side(span.end - 1, pixel_row).upright) --span.end;
+    while (span.end < part_.width && side(span.end, pixel_row).upright) ++span.end;
+    return span;
   }
 
   const float* samples_of(const ViewSector& sector) const {
@@ -62,7 +69,7 @@ class NearestSamples {
 
   void upright(int row, int begin, int end, float* out) const {
     if (begin >= end) return;
-    const ViewSector* sector = plan_.sector_of(side(begin, row));
+    const ViewSector* sector = plan_.sector_of(side(begin, row / rays_));
     if (sector == nullptr) return none(begin, end, out);
     const int step = std::clamp(rays_ * part_.y + row - sector->first_step, 0, sector->steps - 1);
     const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
@@ -70,12 +77,18 @@ class NearestSamples {
     const double rate = map.scale * rays_ / sector->spacing;
     const float* const from = samples_of(*sector) + std::ptrdiff_t{step} * sector->lines;
     const double last = sector->lines - 1;
-    for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(std::clamp(first + rate * x, 0.0, last))];
+    const auto [low, high] = std::minmax(first + rate * begin, first + rate * (end - 1));
+    if (low >= 0 && high < last + 1) {
+      for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(first + rate * x)];
+    } else {
+      for (int x = begin; x < end; ++x)
+        out[x] = from[static_cast<int>(std::clamp(first + rate * x, 0.0, last))];
+    }
   }
 
   void beside(int row, int begin, int end, float* out) const {
     if (begin >= end) return;
-    const ViewSector* sector = plan_.sector_of(side(begin, row));
+    const ViewSector* sector = plan_.sector_of(side(begin, row / rays_));
     if (sector == nullptr) return none(begin, end, out);
     const float* const from = samples_of(*sector);
     const double y = rays_ * part_.y + row + 0.5 - sector->origin;
@@ -113,11 +126,10 @@ void cast_sectors(const core::View& view, const ColumnWalk& walk, int rays, Scra
   cast_columns(batches, walk, scratches, pool);
   const core::SubRectangle part = core::drawn_part(view);
   const NearestSamples nearest(plan, samples, part, rays);
-  const int rows = rays * part.height;
-  pool.run(static_cast<std::size_t>((rows + kNearestRows - 1) / kNearestRows), [&](std::size_t task) {
+  pool.run(static_cast<std::size_t>((part.height + kNearestRows - 1) / kNearestRows), [&](std::size_t task) {
     const int first = static_cast<int>(task) * kNearestRows;
-    for (int row = first; row < std::min(first + kNearestRows, rows); ++row)
-      nearest.get(row, range_m.data() + index_of(row, part.width, 0));
+    for (int row = first; row < std::min(first + kNearestRows, part.height); ++row)
+      nearest.get(row, range_m.data() + index_of(rays * row, part.width, 0));
   });
 }
 
