@@ -1,6 +1,7 @@
 // Tests the discrete column walk against the pseudo-code of Cohen-Or 1996 (figure 7), ray by ray and step by step, bit for bit.
 #include <gtest/gtest.h>
 
+#include <hwy/targets.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -245,9 +247,8 @@ void make_scene(Random& random, RowKind kind, const Map& map, Scene& s) {
   }
 }
 
-class DiscreteWalk : public testing::TestWithParam<RowKind> {};
-
-TEST_P(DiscreteWalk, IsThePseudoCodeOf1996BitForBit) {
+// Follows the columns of many scenes, and compares each with the walk.
+void compare_with_pseudo_code(RowKind kind) {
   Random random(961);
   std::int64_t rows = 0;
   std::int64_t columns_with_ground = 0;
@@ -255,7 +256,7 @@ TEST_P(DiscreteWalk, IsThePseudoCodeOf1996BitForBit) {
     const int intervals = n % 7 == 0 ? 4 : (n % 3 == 0 ? 32 : 128);
     Map map(intervals, random, random.log_uniform(0.1, 3000));
     Scene scene;
-    make_scene(random, GetParam(), map, scene);
+    make_scene(random, kind, map, scene);
     if (n % 2 == 1) scene.blend_from_m = random.log_uniform(10, 1e5);
     std::vector<Seen> expected;
     std::vector<int> first_row;
@@ -276,8 +277,30 @@ TEST_P(DiscreteWalk, IsThePseudoCodeOf1996BitForBit) {
       columns_with_ground += seen.range_m.empty() ? 0 : 1;
     }
   }
-  EXPECT_GT(rows, 20'000);
-  EXPECT_GT(columns_with_ground, 500);
+  EXPECT_GT(rows, 1200 * column_lanes());
+  EXPECT_GT(columns_with_ground, 30 * column_lanes());
+}
+
+class DiscreteWalk : public testing::TestWithParam<RowKind> {
+ protected:
+  ~DiscreteWalk() override { use(0); }
+  // Uses the instruction sets of a mask; 0: all that there are.
+  static void use(std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+TEST_P(DiscreteWalk, IsThePseudoCodeOf1996BitForBit) {
+  std::string last;
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    use(targets);
+    if (std::string_view(column_target()) == last) continue;
+    last = column_target();
+    SCOPED_TRACE(last);
+    compare_with_pseudo_code(GetParam());
+    if (HasFatalFailure()) return;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, DiscreteWalk,
