@@ -101,6 +101,27 @@ TEST_F(DiscreteImage, NarrowVoxelsShowTheReferenceSurface) {
   EXPECT_LE(off, 0.01);
 }
 
+// The camera is lower than the highest ground of the tile below it.
+TEST_F(DiscreteImage, CertificatesNearTheGroundAreFinite) {
+  const paging::Surface surface(bumpy(), std::size_t{1} << 27);
+  const core::SurfaceRadius radius = [&](std::span<const glm::dvec3> directions, std::span<double> radius_m) {
+    surface.radius(directions, radius_m, 1);
+  };
+  const auto draw = rays();
+  Random random(966);
+  for (int n = 0; n < 30; ++n) {
+    mars::Pose pose = random_pose(random);
+    pose.alt_m =
+        surface.at(mars::direction({pose.lon_deg, pose.lat_deg})).height_m + random.log_uniform(5, 300);
+    const core::DrawRequest request = discrete(pose, 96, 64);
+    const core::DrawResult drawn = draw->draw(request);
+    EXPECT_TRUE(std::isfinite(drawn.certificate.shift_bound_px)) << n;
+    const core::ShiftSummary shift =
+        core::summarize(core::forward_shift_px(request.view, drawn.frame.range_m, radius), 96);
+    EXPECT_LE(shift.max_px, drawn.certificate.shift_bound_px) << n;
+  }
+}
+
 TEST_F(DiscreteImage, LargerRatiosTakeCoarserTiles) {
   const auto draw = rays();
   core::DrawRequest request = discrete({20, 10, 3e6, 30, -60, 0}, 160, 120);

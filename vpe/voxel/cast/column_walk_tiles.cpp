@@ -204,13 +204,21 @@ void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
 
 TileUsage ColumnWalk::usage() const {
   TileUsage usage;
+  // Ground that is nowhere steeper than a slope is no nearer to a camera above it than this.
+  const double clear_m =
+      (camera_.distance_m - camera_.ground_m) / std::hypot(1.0, tree_.steepest_slope(exaggeration_));
   for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
     if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
     const lod::TileTree::Index source = fallbacks_ != nullptr ? fallbacks_->source_of(tile) : tile;
     TileUse use{tile, source, least_distance_m(tile)};
     use.geometric_error_m =
         (source == tile ? posts_error_m(tile) : fallback_error_m(tile, source)) + voxel_error_m(source);
-    if (use.geometric_error_m != 0) use.screen_space_error_px = in_image_px(use.geometric_error_m, tile);
+    if (use.geometric_error_m != 0) {
+      // Voxels are never exact, also about a camera that is lower than the tile's highest ground.
+      const double distance_m =
+          rule_.is_discrete && source == tile ? std::max(use.min_distance_m, clear_m) : use.min_distance_m;
+      use.screen_space_error_px = use.geometric_error_m * rule_.focal_px / distance_m;
+    }
     usage.tiles.push_back(use);
     usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(tree_[source], exaggeration_));
   }
