@@ -86,11 +86,12 @@ void take_middle_rays(std::span<const float> rays_m, int width, int rays, std::s
 }
 
 std::int64_t paint_discrete(const core::DrawRequest& request, std::span<const float> rays_m,
-                            ImagePainter& painter, base::ThreadPool& pool, ImagePainter::Reading& reading,
-                            std::vector<AbsentPage>& absent, std::span<base::Rgb> colour) {
+                            std::span<const std::uint8_t> wanted, ImagePainter& painter, base::ThreadPool& pool,
+                            ImagePainter::Reading& reading, std::vector<AbsentPage>& absent,
+                            std::span<base::Rgb> colour) {
   const int rays = request.settings.ray_vertical;
   RayPainter ray_painter(request, painter, pool, reading, absent);
-  if (rays == 1) return ray_painter.paint(request, rays_m, {}, colour);
+  if (rays == 1) return ray_painter.paint(request, rays_m, wanted, colour);
   const auto row = static_cast<std::size_t>(core::drawn_size(request.view).x);
   std::vector<float> range_m(colour.size());
   std::vector<std::uint8_t> is_other(colour.size(), 1);

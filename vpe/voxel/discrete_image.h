@@ -21,11 +21,13 @@ double coarser_share(float range_m, double level_range_m);
 // writes them.
 void take_middle_rays(std::span<const float> rays_m, int width, int rays, std::span<float> range_m);
 
-// Paints all rays of the request's image and sets each pixel to the mean of its own. Of rays of a pixel that follow each other and show
-// one voxel the first is painted. Returns the number of pixels whose first ray has no data. Appends what was absent to `absent`. See
+// Paints all rays of the request's image and sets each pixel to the mean of its own. Of rays of a pixel that follow each other and
+// show one voxel the first is painted. Unless `wanted` is empty, only the pixels where it is not 0 are set; it must be empty for
+// several rays a pixel. Returns the number of pixels whose first ray has no data. Appends what was absent to `absent`. See
 // ImagePainter::paint() for `reading` and errors.
 std::int64_t paint_discrete(const core::DrawRequest& request, std::span<const float> rays_m,
-                            ImagePainter& painter, base::ThreadPool& pool, ImagePainter::Reading& reading,
-                            std::vector<AbsentPage>& absent, std::span<base::Rgb> colour);
+                            std::span<const std::uint8_t> wanted, ImagePainter& painter, base::ThreadPool& pool,
+                            ImagePainter::Reading& reading, std::vector<AbsentPage>& absent,
+                            std::span<base::Rgb> colour);
 
 }  // namespace vpe::voxel

@@ -326,7 +326,7 @@ void RayRenderer::draw_discrete(const core::DrawRequest& request, const RangeOpt
   if (rays > 1) take_middle_rays(rays_m, core::drawn_size(request.view).x, rays, range_m);
   if (colour.empty()) return;
   image.nodata_pixels +=
-      paint_discrete(request, rays_m, painter_, pool_, image.reading, image.absent_colours, colour);
+      paint_discrete(request, rays_m, {}, painter_, pool_, image.reading, image.absent_colours, colour);
   if (rays == 1) smooth(request, range_m, colour);
 }
 
@@ -654,11 +654,12 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
                                      pool_, frame.range_m, &image.fallbacks);
   }
   result.stats.select_ms = ms_since(start);
-  if (request.want_colour) {
-    const bool is_discrete = for_planet.settings.ray_mode == core::RayMode::kDiscrete;
-    image.nodata_pixels =
-        painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_, &image.reading,
-                       normals_, is_discrete ? for_planet.settings.ray_ratio : 1);
+  if (request.want_colour && for_planet.settings.ray_mode == core::RayMode::kDiscrete) {
+    image.nodata_pixels = paint_discrete(for_planet, frame.range_m, wanted.is_wanted, painter_, pool_,
+                                         image.reading, image.absent_colours, frame.colour);
+  } else if (request.want_colour) {
+    image.nodata_pixels = painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_,
+                                         &image.reading, normals_);
     image.absent_colours = image.reading.absent;
   }
   result.certificate = certify(for_planet, frame, image);

@@ -63,7 +63,7 @@ std::string why_not(const core::DrawRequest& request) {
     return "the ray backend draws no triangles: " + std::string(control) + " acts with --backend polygon only";
   if (const std::string_view control = multires_control(request);
       !control.empty() && request.settings.ray_mode != core::RayMode::kMultires)
-    return "the ray backend draws the finest tiles everywhere: " + std::string(control) +
+    return "the ray backend chooses tiles without level control in this rays.mode: " + std::string(control) +
            " acts with --set rays.mode=multires, or with --backend polygon";
   if (request.settings.ray_mode == core::RayMode::kDiscrete) {
     if (!casts_by_columns(request.view))

@@ -217,8 +217,7 @@ TEST_F(DiscreteImage, RaysOfAPixelAreThoseOfAFinerImage) {
 
 TEST_F(DiscreteImage, SinglePixelsAreThoseOfTheImage) {
   const auto draw = rays();
-  core::DrawRequest request = discrete({20, 10, 3e5, 30, -40, 12}, 80, 60);
-  const core::DrawResult whole = draw->draw(request);
+  core::DrawRequest request = discrete({20, 10, 6e6, 30, -60, 12}, 80, 60);
   std::vector<std::uint8_t> is_wanted(80 * 60);
   const std::vector<float> clear_m(is_wanted.size());
   for (std::size_t k = 0; k < is_wanted.size(); k += 3) is_wanted[k] = 1;
@@ -227,10 +226,17 @@ TEST_F(DiscreteImage, SinglePixelsAreThoseOfTheImage) {
   frame.height = 60;
   frame.colour.resize(is_wanted.size());
   frame.range_m.resize(is_wanted.size());
-  draw->draw_pixels(request, {is_wanted, clear_m}, frame);
-  for (std::size_t k = 0; k < is_wanted.size(); k += 3) {
-    ASSERT_EQ(frame.range_m[k], whole.frame.range_m[k]) << k;
-    ASSERT_EQ(frame.colour[k], whole.frame.colour[k]) << k;
+  for (const bool blends : {false, true}) {
+    for (const double coarsening : {1.0, 3.0}) {
+      request.settings.ray_blend = blends;
+      request.coarsening = coarsening;
+      const core::DrawResult whole = draw->draw(request);
+      draw->draw_pixels(request, {is_wanted, clear_m}, frame);
+      for (std::size_t k = 0; k < is_wanted.size(); k += 3) {
+        ASSERT_EQ(frame.range_m[k], whole.frame.range_m[k]) << k;
+        ASSERT_EQ(frame.colour[k], whole.frame.colour[k]) << k << " " << blends << " " << coarsening;
+      }
+    }
   }
   request.settings.ray_vertical = 2;
   EXPECT_THROW(draw->draw_pixels(request, {is_wanted, clear_m}, frame), std::invalid_argument);

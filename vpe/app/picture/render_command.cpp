@@ -46,7 +46,7 @@ void resolve_backend(RenderArguments& arguments, core::Settings& settings, core:
   if (image.backend == core::Backend::kRay && !arguments.explain_lod.empty() &&
       settings.values().ray_mode != core::RayMode::kMultires)
     throw UsageError(
-        "--explain-lod: --backend ray draws the finest tiles everywhere; add --set rays.mode=multires, or take "
+        "--explain-lod: --backend ray chooses tiles by an error in rays.mode=multires only; add --set rays.mode=multires, or take "
         "--backend polygon");
   if (!image.backend && !arguments.explain_lod.empty()) image.backend = core::Backend::kPolygon;
   const BackendChoice chosen = choose_backend(image, settings, {&request, 1}, radius_m, gl::has_gpu());
