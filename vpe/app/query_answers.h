@@ -1,0 +1,28 @@
+// The answers of vpe query on standard output: a table in CSV, or JSON.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "paging/surface/query.h"
+#include "vpe/app/planet/places.h"
+#include "vpe/app/scene/place_surfaces.h"
+
+namespace vpe::app {
+
+// Holds the answers at places, all lists in the order of the request.
+struct QueryAnswers {
+  std::vector<paging::PlaceAnswer> ground;
+  std::optional<std::vector<std::optional<ObjectTop>>> tops;       // with objects
+  std::optional<std::vector<std::vector<PlaceSurface>>> surfaces;  // where all are asked for
+};
+
+// Prints an array with an object for each place.
+void print_json_answers(const QueryAnswers& answers, const PlaceTable& table, const paging::PlanetMeta& meta);
+
+// Prints a table in CSV with a line for each place, or for each surface of each place where all are asked for.
+// Further columns of the places' table come last; those with names that the answer has itself get the prefix
+// input_.
+void print_csv_answers(const QueryAnswers& answers, const PlaceTable& table, const paging::PlanetMeta& meta);
+
+}  // namespace vpe::app
