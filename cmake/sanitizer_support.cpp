@@ -2,6 +2,21 @@
 // loaded, so that reports can name them.
 #include <dlfcn.h>
 
+#ifdef __SANITIZE_THREAD__
+#include <cstddef>
+#include <new>
+
+// Refuse arrays that no machine has, as without a sanitizer: ThreadSanitizer ends the program with a report, where readers of
+// damaged files catch std::bad_alloc.
+void* operator new[](std::size_t bytes) {
+  constexpr std::size_t kMost = std::size_t{1} << 39;
+  if (bytes > kMost) throw std::bad_alloc();
+  return ::operator new(bytes);
+}
+void operator delete[](void* memory) noexcept { ::operator delete(memory); }
+void operator delete[](void* memory, std::size_t /*bytes*/) noexcept { ::operator delete(memory); }
+#endif
+
 extern "C" {
 
 // Replaces that of the C library. A graphics driver is unloaded with its display; what it leaves behind would be
