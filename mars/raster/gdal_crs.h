@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 
 namespace mars {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/label_georeference.h"
 #include "mars/raster/pds_label.h"
 

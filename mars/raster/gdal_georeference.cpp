@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/gdal_crs.h"
 #include "mars/raster/gdal_file.h"
-#include "mars/raster/gdal_scope.h"
 #include "mars/raster/iau_crs.h"
 
 namespace mars {
@@ -50,12 +50,9 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
   if (label.to_map) {
     to_map = *label.to_map;
   } else if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
-    const bool points = dataset.GetGCPCount() > 0;
-    const std::string sibling = points ? "" : sibling_advice(path);
-    throw source_error(path, "has no georeference", points ? "only ground control points" : "",
-                       points            ? "warp it first with gdalwarp -t_srs"
-                       : sibling.empty() ? kNoGeoreference
-                                         : sibling + ", or " + kNoGeoreference);
+    const std::string sibling = sibling_advice(path);
+    throw source_error(path, "has no georeference, no control points and no RPC", "",
+                       sibling.empty() ? kNoGeoreference : sibling + ", or " + kNoGeoreference);
   }
   OGRSpatialReference crs;
   if (!label.crs.empty()) {

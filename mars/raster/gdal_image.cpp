@@ -7,7 +7,9 @@
 #include "mars/raster/gdal_image_decode.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_tiles.h"
+#include "mars/raster/placed_sources.h"
 #include "mars/raster/product_datum.h"
+#include "mars/sources/own_light.h"
 #include "mars/sources/source.h"
 #include "mars/sources/stack.h"
 
@@ -202,8 +204,10 @@ class GdalImage final : public ImageSource, public BoundaryAware {
 
 }  // namespace
 
-std::shared_ptr<const ImageSource> open_image(const std::string& path) {
-  auto raster = std::make_unique<GdalRaster>(path);
+std::shared_ptr<const ImageSource> open_image(const std::string& path) { return open_image(path, {}); }
+
+std::shared_ptr<const ImageSource> open_image(const std::string& path, const PlacementOptions& placement) {
+  auto raster = std::make_unique<GdalRaster>(path, placement);
   ImageFormat format = image_format(*raster);
   return std::make_shared<GdalImage>(std::move(raster), std::move(format));
 }

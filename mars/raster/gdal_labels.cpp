@@ -11,7 +11,7 @@
 #include <cstring>
 #include <memory>
 
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/isis_map.h"
 #include "mars/raster/pds_image.h"
 #include "mars/raster/pds_map.h"

@@ -3,9 +3,11 @@
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 #include <rawdataset.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
 #include <type_traits>
@@ -51,6 +53,22 @@ Coverage coverage_of(GDALDataset& dataset, const PixelWindow& w) {
   return !has_data ? Coverage::kNone : has_gaps ? Coverage::kSome : Coverage::kAll;
 }
 
+bool has_map(GDALDataset& dataset, const LabelGeoreference& label) {
+  if (label.to_map) return true;
+  std::array<double, 6> to_map{};
+  if (dataset.GetGeoTransform(to_map.data()) != CE_None) return false;
+  const OGRSpatialReference* crs = dataset.GetSpatialRef();
+  return !label.crs.empty() || (crs != nullptr && !crs->IsEmpty());
+}
+
+// Adds the files that GDAL knows of a raster.
+void add_files(GDALDataset& dataset, std::vector<std::string>& files) {
+  const CPLStringList known(dataset.GetFileList());
+  for (int i = 0; i < known.size(); ++i) {
+    if (std::find(files.begin(), files.end(), known[i]) == files.end()) files.emplace_back(known[i]);
+  }
+}
+
 // Throws if a raw file is too short. GDAL reads zeros beyond the end of some, as if they were sparse.
 void check_raw_size(const std::string& path, GDALDataset& dataset) {
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
@@ -72,18 +90,28 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 
 }  // namespace
 
-GdalRaster::GdalRaster(const std::string& path)
-    : file_(find_raster(raster_name(path))), handles_([this] { return open_raster(file_); }) {
+GdalRaster::GdalRaster(const std::string& path, const PlacementOptions& placement)
+    : file_(find_raster(raster_name(path))), opened_(open_raster(file_)), handles_([this] {
+        GdalPool<GDALDataset>::Pointer handle = opened_ ? std::move(opened_) : open_raster(file_);
+        return placement_ ? placement_->warp(std::move(handle)) : std::move(handle);
+      }) {
   const GdalScope scope;
   const RemoteScope remote(file_.path);
+  check_bands(file_.path, *opened_);
+  check_raw_size(file_.path, *opened_);
+  nodata_ = nodata_values(*opened_, file_.label);
+  LabelGeoreference label = file_.georeference ? *file_.georeference : label_georeference(file_.path, *opened_);
+  if (!has_map(*opened_, label)) {
+    placement_ = find_placement(file_.path, *opened_, placement, nodata_.any());
+    if (placement_) {
+      label = {};
+      add_files(*opened_, file_.files);
+      file_.files.insert(file_.files.end(), placement_->files().begin(), placement_->files().end());
+    }
+  }
   const auto dataset = handles_.acquire();
-  check_bands(file_.path, *dataset);
-  check_raw_size(file_.path, *dataset);
-  nodata_ = nodata_values(*dataset, file_.label);
   for (int i = 1; i <= dataset->GetRasterCount(); ++i)
     signed_bytes_.push_back(stores_signed_bytes(*dataset->GetRasterBand(i)));
-  const LabelGeoreference label =
-      file_.georeference ? *file_.georeference : label_georeference(file_.path, *dataset);
   georeference_.emplace(file_.path, *dataset, label);
   // Asking a remote file would fetch its whole index.
   windows_ =
@@ -109,11 +137,12 @@ SourceInfo GdalRaster::info() const {
   info.is_remote = is_remote(file_.path);
   info.resolution_m = georeference_->resolution_m();
   if (!georeference_->note().empty()) info.notes.push_back(info.name + ": " + georeference_->note());
-  std::vector<std::string> files = file_.files;
-  if (files.empty()) {
-    const CPLStringList known(acquire()->GetFileList());
-    for (int i = 0; i < known.size(); ++i) files.emplace_back(known[i]);
+  if (placement_) {
+    info.treatment = placement_->treatment();
+    for (const std::string& note : placement_->notes()) info.notes.push_back(info.name + ": " + note);
   }
+  std::vector<std::string> files = file_.files;
+  if (files.empty()) add_files(*acquire(), files);
   for (const std::string& each : files) {
     VSIStatBufL stat{};
     if (VSIStatL(each.c_str(), &stat) != 0) continue;

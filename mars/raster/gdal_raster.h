@@ -11,12 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/gdal_file.h"
 #include "mars/raster/gdal_footprint.h"
 #include "mars/raster/gdal_georeference.h"
 #include "mars/raster/gdal_labels.h"
-#include "mars/raster/gdal_scope.h"
 #include "mars/raster/pds_label.h"
+#include "mars/raster/placement/placement.h"
 #include "mars/sources/source.h"
 
 class GDALDataset;
@@ -26,8 +27,9 @@ namespace mars {
 // Any number of threads may call const members at once.
 class GdalRaster {
  public:
-  // Opens anything that find_raster() finds. Throws SourceError.
-  explicit GdalRaster(const std::string& path);
+  // Opens anything that find_raster() finds. A raster without a map is placed by its control points or its RPC, see
+  // placement/placement.h. Throws SourceError.
+  explicit GdalRaster(const std::string& path, const PlacementOptions& placement = {});
 
   const std::string& path() const { return file_.path; }
   const Georeference& georeference() const { return *georeference_; }
@@ -43,7 +45,10 @@ class GdalRaster {
   // 3.7 reads them as unsigned.
   bool is_signed_byte(int band) const { return signed_bytes_[static_cast<std::size_t>(band - 1)]; }
 
-  // Returns name, size and time of all its files, and the resolution.
+  // Returns true if control points or an RPC place it: its pixels are interpolated, and its overviews not its own.
+  bool is_placed() const { return placement_ != nullptr; }
+
+  // Returns name, size and time of all its files, the resolution, and how it was placed.
   SourceInfo info() const;
 
   // Lends a handle that the caller does not share with other threads.
@@ -58,6 +63,8 @@ class GdalRaster {
 
  private:
   RasterFile file_;
+  GdalPool<GDALDataset>::Pointer opened_;  // the first handle, until it is lent
+  std::shared_ptr<const Placement> placement_;
   mutable GdalPool<GDALDataset> handles_;
   NodataValues nodata_;
   std::vector<bool> signed_bytes_;  // by band

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "mars/geodesy/sphere.h"
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 
 namespace mars {
 namespace {
@@ -88,17 +88,6 @@ std::optional<Projection> projection(const PdsLabel& label, const PdsPlacement& 
   return std::nullopt;
 }
 
-// Returns the value of one unit in the last digit of MAP_SCALE, in metres.
-double last_digit_m(const PdsLabel& label) {
-  const std::string name = kObject + "MAP_SCALE";
-  const std::string text = label.text(name);
-  const std::size_t end = text.find_first_not_of("+-.0123456789");
-  const std::size_t point = text.find('.');
-  const std::size_t last = end == std::string::npos ? text.size() : end;
-  const double digits = point < last ? static_cast<double>(last - point - 1) : 0.0;
-  return std::pow(10.0, -digits) * pds_metres(label, name).value_or(0.0) / label.number(name).value_or(1.0);
-}
-
 // Returns metres per pixel on a sphere of this radius. If the label may mean another radius (`unsure`),
 // MAP_RESOLUTION is used only if MAP_SCALE is its rounding.
 std::optional<double> pixel_m(const PdsLabel& label, double radius_m, bool unsure) {
@@ -108,7 +97,7 @@ std::optional<double> pixel_m(const PdsLabel& label, double radius_m, bool unsur
   const double by_resolution = radius_m * kRadiansPerDegree / *resolution;
   if (!scale || !(*scale > 0)) return by_resolution;
   const bool whole = std::abs(*resolution - std::round(*resolution)) < 1e-9;
-  const double slack_m = unsure ? last_digit_m(label) : kRounding * by_resolution;
+  const double slack_m = unsure ? pds_last_digit_m(label, kObject + "MAP_SCALE") : kRounding * by_resolution;
   return whole && std::abs(*scale - by_resolution) <= slack_m ? by_resolution : *scale;
 }
 
@@ -124,6 +113,17 @@ std::optional<double> pds_metres(const PdsLabel& label, const std::string& name)
   for (char& c : unit) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   const bool metres = unit == "M" || unit == "METER" || unit == "METERS" || unit == "METRE" || unit == "METRES";
   return metres ? *value : *value * 1000;
+}
+
+double pds_last_digit_m(const PdsLabel& label, const std::string& name) {
+  const std::string text = label.text(name);
+  const std::size_t end = text.find_first_not_of("+-.0123456789");
+  const std::size_t point = text.find('.');
+  const std::size_t last = end == std::string::npos ? text.size() : end;
+  const double digits = point < last ? static_cast<double>(last - point - 1) : 0.0;
+  const auto value = label.number(name);
+  if (!value) return 0;
+  return std::pow(10.0, -digits) * (*value == 0 ? 1.0 : *pds_metres(label, name) / *value);
 }
 
 double squared_axis_ratio(double a_m, double c_m) { return c_m / a_m * (c_m / a_m); }

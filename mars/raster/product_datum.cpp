@@ -11,7 +11,7 @@
 #include <regex>
 
 #include "mars/geodesy/bodies.h"
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 
 namespace mars {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/iau_crs.h"
 #include "tests/fuzz/targets.h"
 

@@ -6,10 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/gdal_raster.h"
-#include "mars/raster/gdal_scope.h"
 #include "mars/raster/pds_image.h"
 #include "mars/raster/pds_map.h"
+#include "mars/sources/own_light.h"
 #include "tests/fuzz/targets.h"
 
 namespace fuzz {

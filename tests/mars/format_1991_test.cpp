@@ -215,7 +215,8 @@ TEST(Mdim, RefusesWhatItCannotPlace) {
   };
   EXPECT_EQ(error("TARGET_NAME", "MARS"), "");
   for (const auto& [key, text, words] :
-       {std::tuple{"MAP_PROJECTION_TYPE", "POLAR_STEREOGRAPHIC", "not SINUSOIDAL: POLAR STEREOGRAPHIC"},
+       {std::tuple{"MAP_PROJECTION_TYPE", "MERCATOR", "neither SINUSOIDAL nor POLAR STEREOGRAPHIC: MERCATOR"},
+        {"MAP_PROJECTION_TYPE", "POLAR_STEREOGRAPHIC", "CENTER_LATITUDE is no pole: 0.00000"},
         {"X_AXIS_PROJECTION_OFFSET", "", "no usable IMAGE_MAP_PROJECTION_CATALOG.X_AXIS_PROJECTION_OFFSET"},
         {"MAP_RESOLUTION", "0", "no usable radii or MAP_RESOLUTION"},
         {"A_AXIS_RADIUS", "\"N/A\"", "no usable radii"},

@@ -12,6 +12,7 @@
 #include "mars/raster/gdal_overviews.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_tiles.h"
+#include "mars/raster/placed_sources.h"
 #include "mars/raster/product_datum.h"
 #include "mars/sources/adjusted.h"
 #include "mars/sources/source.h"
@@ -47,7 +48,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
         format_(format),
         info_(raster_->info()),
         levels_{{-1, grid_, {1, 1}, 1}} {
-    if (info_.is_remote) {
+    if (info_.is_remote && !raster_->is_placed()) {
       levels_ = raster_levels(*raster_, format.masked);
       blocks_ = std::make_shared<const BlockReader<T>>(raster_, levels_);
     }
@@ -438,7 +439,12 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 }  // namespace
 
 std::shared_ptr<const ElevationSource> open_elevation(const std::string& path) {
-  auto raster = std::make_unique<GdalRaster>(path);
+  return open_elevation(path, {});
+}
+
+std::shared_ptr<const ElevationSource> open_elevation(const std::string& path,
+                                                      const PlacementOptions& placement) {
+  auto raster = std::make_unique<GdalRaster>(path, placement);
   const BandFormat format = band_format(*raster);
   if (format.fits_float) return std::make_shared<GdalElevation<float>>(std::move(raster), format);
   return std::make_shared<GdalElevation<double>>(std::move(raster), format);

@@ -76,6 +76,10 @@ void add_build(CLI::App& program, Common& common) {
       {{"elevation and imagery of the whole planet", "vpe build mola.tif --image viking.tif -o mars.vpe"},
        {"a finer inset; at each place the finest raster decides",
         "vpe build mola.tif ctx.tif --image viking.tif --image ortho.tif --align edges -o gale.vpe"},
+       {"a scanned picture with control points, by an affine map",
+        "vpe build mola.tif --image scan.tif --gcp-method polynomial1 -o scan.vpe"},
+       {"a satellite image with RPC, over the ground of a DEM",
+        "vpe build ctx.tif --image scene.tif --rpc-dem ctx.tif -o scene.vpe"},
        {"full resolution in a box only, first its size and time",
         "vpe build mola.tif --region -95,-20,-25,5 -o valles.vpe --estimate"}});
   command->callback([arguments, &common] { build(*arguments, common); });

@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "mars/embedded/embedded.h"
+#include "mars/geodesy/bodies.h"
+#include "mars/raster/placed_sources.h"
 #include "mars/sources/source_checks.h"
 #include "relief/files/relief_file.h"
 #include "relief/relief_source.h"
@@ -28,6 +30,18 @@ bool is_embedded(const std::string& path) {
 // it is as fine as requested, elsewhere as fine as in the cached planet.
 double embedded_finest_m(const paging::BuildOptions& options) {
   return options.regions.empty() ? 0.0 : options.finest_spacing_m;
+}
+
+// Returns the radius of the body that the user names, 0 if they name none.
+double named_radius_m(const SourceArguments& arguments) {
+  if (arguments.radius_m > 0) return arguments.radius_m;
+  const mars::Body* body = mars::find_body(std::string_view(arguments.body));
+  return body != nullptr ? body->radius_m : 0;
+}
+
+// Throws UsageError for values of options that no raster of the request asks for.
+void check_placement(const BuildRequest& request, const std::vector<std::string>& rasters) {
+  for (const std::string& path : rasters) placement_of(request.placement, path, rasters, 0);
 }
 
 void add_reliefs(const BuildRequest& request, double radius_m, RequestedSources& sources) {
@@ -82,6 +96,7 @@ void add_build_request(CLI::App& command, BuildRequest& request) {
                   "Step of stored heights, metres (default: well below what the rasters resolve)")
       ->check(number_within(1e-6, 1e3));
   add_source_options(command, request.sources);
+  add_placement_options(command, request.placement);
   command
       .add_option(
           "--detail", request.detail,
@@ -124,6 +139,7 @@ std::vector<std::string> to_arguments(const BuildRequest& request) {
   add_number("--blunder", s.outlier_floor_m, defaults.sources.outlier_floor_m);
   add_text("--body", s.body, defaults.sources.body);
   add_number("--radius", s.radius_m, defaults.sources.radius_m);
+  append_arguments(request.placement, out);
   add_text("--detail", request.detail, defaults.detail);
   return out;
 }
@@ -158,7 +174,14 @@ std::vector<std::string> files_of(const BuildRequest& request) {
   std::erase_if(files, is_embedded);
   if (!request.sources.areoid.empty()) files.push_back(request.sources.areoid);
   for (const std::string& mask : request.sources.masks) files.push_back(named_value(mask).value);
+  for (const std::string& dem : placement_files(request.placement, rasters_of(request))) files.push_back(dem);
   return files;
+}
+
+std::vector<std::string> rasters_of(const BuildRequest& request) {
+  std::vector<std::string> rasters = request.dems;
+  rasters.insert(rasters.end(), request.images.begin(), request.images.end());
+  return rasters;
 }
 
 RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions& options) {
@@ -175,9 +198,16 @@ RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions&
   const mars::EmbeddedOptions embedded{.finest_m = embedded_finest_m(options), .detail = has_detail};
 
   RequestedSources sources;
+  const std::vector<std::string> rasters = rasters_of(request);
+  check_placement(request, rasters);
+  const auto placement = [&](const std::string& path, double body_radius_m) {
+    return placement_of(request.placement, path, rasters, body_radius_m);
+  };
   for (const std::string& path : request.dems) {
     if (relief::is_relief_path(path)) continue;
-    sources.dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded) : mars::open_elevation(path));
+    sources.dems.push_back(is_embedded(path)
+                               ? mars::embedded_elevation(embedded)
+                               : mars::open_elevation(path, placement(path, named_radius_m(request.sources))));
   }
   if (sources.dems.empty() && !request.dems.empty())
     throw UsageError(request.dems.front() +
@@ -186,7 +216,8 @@ RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions&
   sources.combined = combine_sources(sources.dems, arguments, options);
   add_reliefs(request, options.radius_m, sources);
   for (const std::string& path : request.images) {
-    sources.images.push_back(is_embedded(path) ? mars::embedded_image(embedded) : mars::open_image(path));
+    sources.images.push_back(is_embedded(path) ? mars::embedded_image(embedded)
+                                               : mars::open_image(path, placement(path, options.radius_m)));
     mars::check_body(sources.images.back()->infos().front(), options.radius_m);
   }
   if (!sources.images.empty())

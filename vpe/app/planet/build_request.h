@@ -9,6 +9,7 @@
 #include "paging/build/builder.h"
 #include "relief/relief.h"
 #include "vpe/app/planet/build_sources.h"
+#include "vpe/app/planet/placement_option.h"
 
 namespace vpe::app {
 
@@ -17,6 +18,7 @@ struct BuildRequest {
   std::vector<std::string> images;
   std::vector<std::string> regions;  // WEST,SOUTH,EAST,NORTH
   SourceArguments sources;
+  PlacementArguments placement;
   std::string detail;  // empty, "synthetic" or "none"
   double base_spacing_m = paging::BuildOptions().base_spacing_m;
   double finest_spacing_m = 0;  // 0: that of the rasters
@@ -37,6 +39,9 @@ paging::Region parse_region(const std::string& text);
 
 // Returns all files of a request; the word `embedded` is none.
 std::vector<std::string> files_of(const BuildRequest& request);
+
+// Returns its elevation and image rasters, which options may name.
+std::vector<std::string> rasters_of(const BuildRequest& request);
 
 // Holds the opened sources of a request.
 struct RequestedSources {

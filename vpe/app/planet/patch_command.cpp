@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "mars/raster/placed_sources.h"
 #include "mars/remote/gdal_remote.h"
 #include "paging/build/build_inputs.h"
 #include "paging/planet/planet_database.h"
@@ -33,6 +34,7 @@ struct PatchArguments {
   std::string mask;
   std::string alignment;
   std::string datum;
+  PlacementArguments placement;
   std::string folder;  // where the planet's own sources are looked for
   bool force = false;
   paging::BuildOptions options;
@@ -45,6 +47,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 
 // Replaces a source's path in the request, also where options name it.
 void rename_source(BuildRequest& request, const std::string& from, const std::string& to) {
+  rename_placement(request.placement, from, to, rasters_of(request));
   for (auto* files : {&request.dems, &request.images})
     for (std::string& file : *files)
       if (file == from) file = to;
@@ -138,11 +141,18 @@ BuildRequest patched_request(BuildRequest request, const PatchArguments& argumen
     throw UsageError("--region: " + arguments.planet +
                      " was built without it, so all of it has full resolution; leave it out");
   }
+  std::vector<std::string> added = arguments.dems;
+  added.insert(added.end(), arguments.images.begin(), arguments.images.end());
+  add_placement(request.placement, arguments.placement, added);
   for (const std::string& dem : arguments.dems) {
     request.dems.push_back(dem);
     if (relief::is_relief_path(dem) || !has_options) continue;
     // Products of several files are known by the name of their label.
-    const std::string name = mars::open_elevation(dem)->infos().front().name;
+    const std::string name =
+        mars::open_elevation(dem, placement_of(request.placement, dem, rasters_of(request), meta.radius_m))
+            ->infos()
+            .front()
+            .name;
     if (!arguments.mask.empty()) request.sources.masks.push_back(name + "=" + arguments.mask);
     if (!arguments.alignment.empty()) request.sources.alignments.push_back(name + "=" + arguments.alignment);
     if (!arguments.datum.empty()) request.sources.datums.push_back(name + "=" + arguments.datum);
@@ -259,6 +269,7 @@ void add_patch(CLI::App& program, Common& common) {
       ->check(CLI::IsMember({"none", "plane", "edges"}));
   command->add_option("--datum", arguments->datum,
                       "Vertical datum of DEM where it does not state one, as for 'vpe build'");
+  add_placement_options(*command, arguments->placement);
   command
       ->add_option(
           "--region", arguments->regions,

@@ -1,4 +1,4 @@
-#include "mars/raster/gdal_scope.h"
+#include "mars/raster/gdal/gdal_scope.h"
 
 #include <cpl_error.h>
 #include <gdal.h>
@@ -20,7 +20,7 @@ GdalScope::~GdalScope() {
   CPLPopErrorHandler();
 }
 
-std::string GdalScope::message() const {
+std::string GdalScope::last_message() {
   std::string text = CPLGetLastErrorMsg();
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();

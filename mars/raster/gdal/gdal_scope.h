@@ -18,7 +18,10 @@ class GdalScope {
   GdalScope& operator=(const GdalScope&) = delete;
 
   // Returns the last message of the libraries, on one line, or "".
-  std::string message() const;
+  std::string message() const { return last_message(); }
+
+  // Does the same on a thread that has a scope elsewhere.
+  static std::string last_message();
 };
 
 // Returns an error that says "PATH: OPERATION: WORDS; ADVICE". Empty words are left out.
