@@ -3,6 +3,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "mars/raster/gdal/label_keywords.h"
 #include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_image_decode.h"
 #include "mars/raster/gdal_raster.h"
@@ -24,12 +25,18 @@ struct ImageTile {
   std::size_t bytes() const { return sizeof(ImageTile) + pixels.size() * sizeof(Pixel); }
 };
 
+std::vector<LabelKeyword> keywords_of(const GdalRaster& raster) {
+  if (!raster.label()) return label_keywords(*raster.acquire());
+  return {raster.label()->values.begin(), raster.label()->values.end()};
+}
+
 class GdalImage final : public ImageSource, public BoundaryAware {
  public:
   GdalImage(std::unique_ptr<GdalRaster> raster, ImageFormat format)
       : raster_(std::move(raster)), format_(std::move(format)), info_(raster_->info()) {
     info_.quantum_m = 0;
     info_.body_radius_m = body_radius_m(*raster_->acquire());
+    info_.has_own_light = says_own_light(keywords_of(*raster_));
     for (PixelGrid grid = raster_->grid();; grid = raster_->grid().reduced(static_cast<int>(grids_.size()))) {
       grids_.push_back(grid);
       if (grid.width <= 1 && grid.height <= 1) break;

@@ -55,6 +55,7 @@ struct SourceInfo {
   std::optional<double> accuracy_m;  // one sigma, vertical, if the product states it
   bool is_remote = false;            // read over a network; not recorded
   bool illustration = false;         // true for synthetic planets, which must not be taken for data
+  bool has_own_light = false;        // of imagery: a photograph in the light of its own sun, see own_light.h
   std::string treatment;             // changes made to the product's own values; empty: none
   std::vector<std::string> notes;    // sentences for the user about how it is read; not recorded
 };

@@ -50,6 +50,8 @@ json to_json(const mars::SourceInfo& s) {
   if (s.body_radius_m > 0) j["body_radius_m"] = s.body_radius_m;
   if (!s.treatment.empty()) j["treatment"] = s.treatment;
   if (!s.content.empty()) j["content"] = s.content;
+  // Files of sources without it stay as they were.
+  if (s.has_own_light) j["own_light"] = true;
   return j;
 }
 
@@ -74,6 +76,7 @@ mars::SourceInfo source_from(const json& j, double radius_m) {
   s.body_radius_m = j.value("body_radius_m", 0.0);
   s.treatment = j.value("treatment", std::string());
   s.content = j.value("content", std::string());
+  s.has_own_light = j.value("own_light", false);
   return s;
 }
 
@@ -91,7 +94,7 @@ std::vector<mars::SourceInfo> sources_from(const json& list, double radius_m) {
 
 auto tie(const mars::SourceInfo& s) {
   return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.accuracy_m, s.illustration,
-                  s.body_radius_m, s.treatment, s.content);
+                  s.body_radius_m, s.treatment, s.content, s.has_own_light);
 }
 
 bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {

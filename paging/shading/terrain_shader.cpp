@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "paging/shading/terrain_grid.h"
+#include "vpe/core/appearance/light_choice.h"
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/appearance/slope.h"
 
@@ -56,7 +57,7 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
   const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
   shading.exaggeration = a.exaggeration;
   shading.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
-  shading.lit = a.light && !of_vertices && a.mode != Mode::kUnlit;
+  shading.lit = vpe::core::is_lit_by_sun(a) && !of_vertices && a.mode != Mode::kUnlit;
   shading.colour_source = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? ColourSource::kPlain
                           : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
                                                                              : shown;

@@ -167,7 +167,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   wanted.colourise = true;
   wanted.sun = "Ls90,15:00";
   wanted.sun_diffuse = 2;
-  wanted.light = false;
+  wanted.light = Light::kOff;
   wanted.image_low = 20;
   wanted.image_high = 200;
   wanted.image_gamma = 1.5;

@@ -46,6 +46,7 @@ void run_parts(const mars::PdsLabel& label) {
   mars::pds_placement(label);
   mars::gdal_misreads(label);
   mars::pds_nodata(label);
+  mars::says_own_light(std::vector<mars::LabelKeyword>(label.values.begin(), label.values.end()));
   try {
     if (const auto place = mars::pds_map(scratch(), label)) check_place(*place);
   } catch (const mars::SourceError&) {

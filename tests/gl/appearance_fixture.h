@@ -74,7 +74,7 @@ inline std::vector<vpe::core::Appearance> all_appearances() {
       vpe::core::Appearance& a = all.emplace_back();
       a.mode = mode;
       a.shading = shading;
-      a.light = false;
+      a.light = vpe::core::Light::kOff;
       a.colour = Colour::kNone;
       a.background = vpe::core::Background::kBlack;
     }
@@ -91,7 +91,7 @@ inline std::vector<vpe::core::Appearance> all_appearances() {
 inline std::string name(const vpe::core::Appearance& a) {
   return "mode " + std::to_string(static_cast<int>(a.mode)) + " shading " +
          std::to_string(static_cast<int>(a.shading)) + " colour " + std::to_string(static_cast<int>(a.colour)) +
-         (a.colourise ? " colourised" : "") + (a.light ? "" : " without light") +
+         (a.colourise ? " colourised" : "") + (a.light == vpe::core::Light::kOff ? " without light" : "") +
          (a.image_low > 0 ? " stretched" : "");
 }
 

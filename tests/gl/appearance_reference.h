@@ -174,7 +174,7 @@ struct GroundReference {
     if (appearance.mode == Mode::kTextured)
       c = appearance.colourise && appearance.colour != Colour::kNone ? colourised(image_rgb, shown())
                                                                      : image_rgb;
-    if (appearance.mode == Mode::kUnlit || !appearance.light) return c;
+    if (appearance.mode == Mode::kUnlit || appearance.light == vpe::core::Light::kOff) return c;
     return c *
            std::sqrt(appearance.sun_ambient + appearance.sun_diffuse * std::max(0.0, glm::dot(normal, sun)));
   }

@@ -41,6 +41,32 @@ TEST_F(ImageryPanelTest, SlidersStretchTheImagery) {
   EXPECT_EQ(window_->image().pixels, before);
 }
 
+TEST_F(ImageryPanelTest, TheLightHasThreeChoices) {
+  planet_ = imaged();
+  open(1280, 800);
+  settle();
+  ASSERT_TRUE(window_->session().set("mode", "textured").empty());
+  settle();
+  const std::vector<vpe::base::Rgb> lit = window_->image().pixels;
+  click("Look");
+  EXPECT_EQ(values().light, vpe::core::Light::kAuto);
+  click("Light");
+  click("Light=off");
+  settle();
+  EXPECT_EQ(values().light, vpe::core::Light::kOff);
+  EXPECT_NE(window_->image().pixels, lit);
+  click("Light");
+  click("Light=on");
+  settle();
+  EXPECT_EQ(values().light, vpe::core::Light::kOn);
+  EXPECT_EQ(window_->image().pixels, lit);
+  click("Light");
+  click("Light=auto");
+  settle();
+  EXPECT_EQ(values().light, vpe::core::Light::kAuto);
+  EXPECT_EQ(window_->image().pixels, lit);
+}
+
 TEST_F(ImageryPanelTest, WithoutImageryThereIsNothingToStretch) {
   open();
   settle();

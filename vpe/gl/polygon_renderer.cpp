@@ -1,4 +1,5 @@
 #include "vpe/gl/polygon_renderer.h"
+#include "paging/planet/planet_look.h"
 #include "paging/planet/planet_user.h"
 #include "paging/surface/surface.h"
 #include "vpe/core/appearance/sky.h"
@@ -364,7 +365,7 @@ void PolygonRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> pl
 
 core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   core::DrawRequest request = asked;
-  core::for_body(request.settings, planet_->meta().body);
+  paging::fit_to_planet(request.settings, planet_->meta());
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (request.view.projection != core::Projection::kPerspective) {

@@ -1,5 +1,4 @@
 #include "vpe/voxel/ray_renderer.h"
-#include "vpe/core/appearance/sky.h"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "paging/planet/planet_look.h"
 #include "paging/planet/planet_user.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/inspect.h"
@@ -508,7 +508,7 @@ void RayRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   core::DrawRequest for_planet = request;
-  core::for_body(for_planet.settings, planet_->meta().body);
+  paging::fit_to_planet(for_planet.settings, planet_->meta());
   try {
     return draw_image(for_planet);
   } catch (...) {
@@ -624,7 +624,7 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
       (request.want_colour && frame.colour.size() != pixels))
     throw std::invalid_argument("the pixels to draw have another size than the image");
   core::DrawRequest for_planet = request;
-  core::for_body(for_planet.settings, planet_->meta().body);
+  paging::fit_to_planet(for_planet.settings, planet_->meta());
   prefetcher_.stop();
   const bool reads_all = loader_.begin(for_planet);
   if (is_below_ground(for_planet)) {

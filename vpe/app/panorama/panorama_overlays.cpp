@@ -5,13 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "paging/planet/planet_look.h"
 #include "paging/surface/surface.h"
 #include "panorama/horizon/landmarks.h"
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/panorama/horizon_objects.h"
 #include "vpe/app/scene/scene_library.h"
-#include "vpe/core/appearance/sky.h"
 #include "vpe/overlay/overlay.h"
 #include "vpe/overlay/panorama_overlay.h"
 
@@ -107,7 +107,7 @@ overlay::SpriteLayer PanoramaOverlays::lay_out() const {
     return at;
   };
   scene.appearance = values;
-  core::for_body(scene.appearance, planet_->meta().body);
+  paging::fit_to_planet(scene.appearance, planet_->meta());
   scene.has_imagery = !planet_->image_keys().empty();
   if (!places_.empty()) scene.names = visible_names(request_, places_, planet_, memory_bytes_, pool_);
   return overlay::lay_out_panorama(values, scene);

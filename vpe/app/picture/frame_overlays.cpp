@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "paging/planet/planet_look.h"
 #include "paging/surface/query.h"
 #include "vpe/app/picture/contour_ranges.h"
-#include "vpe/core/appearance/sky.h"
 
 namespace vpe::app {
 
@@ -42,7 +42,7 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const Fram
   scene.range_m = ground.range_m;
   scene.radius_m = planet_->radius_m();
   scene.appearance = settings;
-  core::for_body(scene.appearance, planet_->meta().body);
+  paging::fit_to_planet(scene.appearance, planet_->meta());
   scene.shift_px = shift_px(ground.certificate);
   if (ground.contours) {
     scene.contours = {ground.contours->frame.range_m, shift_px(ground.contours->certificate)};

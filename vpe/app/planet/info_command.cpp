@@ -75,7 +75,9 @@ void print_meta(const paging::PlanetMeta& m) {
   for (const mars::SourceInfo& s : m.sources)
     print_source("elevation from", s, length_text(s.resolution_m) + " posts, datum " + to_string(s.datum));
   for (const mars::SourceInfo& s : m.image_sources)
-    print_source("image from", s, length_text(s.resolution_m) + " pixels");
+    print_source(
+        "image from", s,
+        length_text(s.resolution_m) + " pixels" + (s.has_own_light ? ", a photograph with its own light" : ""));
   print_line("built by", "vpe " + m.program + ", identity " + m.identity);
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mars/raster/raster_memory.h"
+#include "paging/planet/planet_look.h"
 #include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
@@ -80,6 +81,14 @@ std::string estimate_text(const paging::BuildEstimate& e) {
   return text;
 }
 
+void note_own_light(const std::vector<mars::SourceInfo>& images) {
+  if (!paging::have_own_light(images)) return;
+  std::fprintf(
+      stderr,
+      "vpe: note: by its label the imagery is a photograph with its own light; it is shown without synthetic light, "
+      "also where it has no data; --set light=on lights it\n");
+}
+
 }  // namespace
 
 void limit_rasters(const Common& common) {
@@ -98,6 +107,7 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
       for (const std::string& note : info.notes) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
     }
   }
+  if (image != nullptr && !common.quiet) note_own_light(image->infos());
   const auto infos = elevation.infos();
   if (std::any_of(infos.begin(), infos.end(), [](const mars::SourceInfo& s) { return s.illustration; }))
     options.resampling_posts = kSyntheticResamplingPosts;

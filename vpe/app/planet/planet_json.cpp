@@ -8,13 +8,14 @@ using nlohmann::json;
 
 namespace {
 
-json sources_json(const std::vector<mars::SourceInfo>& sources) {
+json sources_json(const std::vector<mars::SourceInfo>& sources, bool are_images) {
   json list = json::array();
   for (const mars::SourceInfo& s : sources) {
     json entry{{"name", s.name},           {"size_bytes", s.size_bytes},  {"resolution_m", s.resolution_m},
                {"quantum_m", s.quantum_m}, {"datum", to_string(s.datum)}, {"illustration", s.illustration}};
     entry["treatment"] = s.treatment.empty() ? json() : json(s.treatment);
     entry["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
+    if (are_images) entry["own_light"] = s.has_own_light;
     list.push_back(std::move(entry));
   }
   return list;
@@ -60,8 +61,8 @@ json planet_json(const paging::PlanetMeta& m) {
            {"resampling_rms_m", m.resampling.rms_m},
            {"resampling_posts", m.resampling.posts},
            {"by_level", levels_json(m)},
-           {"sources", sources_json(m.sources)},
-           {"image_sources", sources_json(m.image_sources)},
+           {"sources", sources_json(m.sources, false)},
+           {"image_sources", sources_json(m.image_sources, true)},
            {"program", m.program},
            {"arguments", m.arguments},
            {"identity", m.identity}};

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "objects/draw/composer.h"
+#include "paging/planet/planet_look.h"
 #include "paging/planet/planet_user.h"
 #include "paging/shading/ground_light.h"
 #include "vpe/app/scene/scene_library.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/shading.h"
-#include "vpe/core/appearance/sky.h"
 
 namespace vpe::app {
 
@@ -40,7 +40,7 @@ class ObjectPass {
             std::span<const std::uint8_t> only, core::Frame& frame, core::DrawResult& result) {
     core::Certificate& certificate = result.certificate;
     core::DrawRequest for_planet = request;
-    core::for_body(for_planet.settings, planet_->meta().body);
+    paging::fit_to_planet(for_planet.settings, planet_->meta());
     const paging::GroundLight light(shader_, surface_,
                                     paging::shading_params(for_planet.settings, request.sun,
                                                            planet_->meta().finest_image_level >= 0, nullptr));

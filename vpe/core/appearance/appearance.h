@@ -34,6 +34,10 @@ enum class Colour {
   kDifference,  // metres above the ground of another planet (PlanetFile::compared_with()), without exaggeration
 };
 
+// Whether the sun lights ground in the lit modes. kOff: colours and imagery are as they are. kAuto: off for imagery that the
+// planet file knows as photographs with their own light, on otherwise (light_choice.h).
+enum class Light { kAuto, kOn, kOff };
+
 enum class Background { kBlack, kWhite, kSky };
 
 // The colour, 0 to 255, of ground of Mars that shows no value and no imagery.
@@ -69,8 +73,7 @@ struct Appearance : HsvRamp {
   double image_high = 255;
   double image_gamma = 1;
   bool colourise = false;  // imagery keeps its brightness and takes hue and saturation from `colour`
-  // The sun lights ground in the lit modes. False: colours and imagery are as they are, for photographs with their own light.
-  bool light = true;
+  Light light = Light::kAuto;
   double exaggeration = 1;  // factor on elevations; larger: steeper ground and larger errors
   // Position of the sun: "local" (azimuth and elevation at the ground below the camera), a date, or Ls and
   // local time; mars/geodesy/mars_time.h.

@@ -57,9 +57,12 @@ const KeyRegistry<SettingsValues>& registry() {
        "palette=hsv: brightness at the upper end"},
       {"colourise", Declare::toggle<&V::colourise>(), "",
        "imagery keeps its brightness and takes hue and saturation from the value that 'colour' shows"},
-      {"light", Declare::toggle<&V::light>(), "",
-       "the sun lights ground in the modes with light; off: colours and imagery are as they are, for photographs that hold the "
-       "light of their own sun"},
+      {"light",
+       Declare::choice<&V::light>(
+           {word("auto", Light::kAuto), word("on", Light::kOn), word("off", Light::kOff)}),
+       "",
+       "the sun lights ground in the modes with light; off: colours and imagery are as they are; auto: off for imagery that "
+       "the planet file knows as photographs with the light of their own sun, on otherwise"},
       {"image.low", Declare::number<&V::image_low>(0, 255), "",
        "value of the imagery that is shown black; above image.high: the negative"},
       {"image.high", Declare::number<&V::image_high>(0, 255), "", "value of the imagery that is shown white"},

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "mars/geodesy/sun.h"
+#include "paging/planet/planet_look.h"
 #include "vpe/core/appearance/palette.h"
-#include "vpe/core/appearance/sky.h"
 
 namespace vpe::explore {
 
@@ -28,7 +28,7 @@ core::RgbImage MapPainter::paint(const MapView& map, MapStyle style, base::Threa
   core::Appearance appearance;
   appearance.mode = style == MapStyle::kImagery ? core::Mode::kTextured : core::Mode::kColoured;
   appearance.colour = core::Colour::kElevation;
-  core::for_body(appearance, planet_->meta().body);
+  paging::fit_to_planet(appearance, planet_->meta());
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (paging::needs_scale(appearance, has_image) && scale_ == nullptr)
     scale_ = std::make_shared<core::ColourScale>(appearance);

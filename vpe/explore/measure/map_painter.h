@@ -17,7 +17,8 @@ class MapPainter {
  public:
   MapPainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
-  // Paints a map with light from the north-west at 45 degrees everywhere. Areas beyond the poles are grey,
+  // Paints a map with light from the north-west at 45 degrees everywhere, except on imagery that is known to hold its
+  // own light. Areas beyond the poles are grey,
   // areas of nodata black. Pixels do not depend on the pool. Throws paging::PlanetError.
   core::RgbImage paint(const MapView& map, MapStyle style, base::ThreadPool& pool);
 

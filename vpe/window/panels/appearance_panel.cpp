@@ -25,7 +25,7 @@ struct Look {
 };
 
 constexpr std::array kLooks{
-    Look{"Photo", "textured", "", "imagery with light"},
+    Look{"Photo", "textured", "", "imagery, lit unless it holds its own light"},
     Look{"Elevation", "coloured", "elevation", "colours of elevation, with light"},
     Look{"Slope", "coloured", "slope", "colours of slope, with light"},
     Look{"Aspect", "coloured", "aspect", "colours of the direction of descent, with light"},
@@ -230,10 +230,12 @@ void AppearancePanel::draw_season() {
 }
 
 void AppearancePanel::draw_air() {
-  bool light = session_->settings().values().light;
-  if (widgets_->check("Light", light,
-                      "the sun lights the ground; off for photographs that hold their own light"))
-    set("light", light ? "on" : "off");
+  static const std::array<std::string, 3> kLights{"auto", "on", "off"};
+  int light = static_cast<int>(std::find(kLights.begin(), kLights.end(), get("light")) - kLights.begin());
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5);
+  if (widgets_->choose("Light", light, kLights,
+                       "on: the sun lights the ground; auto: except on photographs that hold their own light"))
+    set("light", kLights[static_cast<std::size_t>(light)]);
   ImGui::SameLine();
   bool shadows = session_->settings().values().shadows;
   if (widgets_->check("Cast shadows", shadows, "ground casts shadows on ground; takes longer"))
