@@ -62,6 +62,9 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
                           : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
                                                                              : shown;
   if (shading.colour_source == ColourSource::kImage && a.colourise) shading.hue = shown;
+  if (a.shading == vpe::core::Shading::kVertex && !of_vertices)
+    shading.flat =
+        shading.colour_source == ColourSource::kSlope || shading.colour_source == ColourSource::kAspect;
   // Parameters that are not used keep their defaults, so that equal images have equal parameters.
   if (shading.lit) {
     shading.sun = sun;

@@ -5,7 +5,8 @@
 // With Gouraud shading, light is computed from posts as fine as the image needs, not from the mesh that is
 // drawn, so that shading does not change with the mesh. It is baked into one texture for each tile, because
 // software OpenGL affords a single bilinear lookup only (docs/design/rendering.md). With flat shading every
-// drawn triangle has one colour.
+// drawn triangle has one colour. With light of vertices whoever draws the mesh lights it: it takes colours without light
+// from here, and the normals of its vertices.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -61,7 +62,8 @@ struct ShadingParams {
 };
 
 // Converts an appearance to shading parameters. `scale` is the colour scale of the appearance; null where it
-// shows none.
+// shows none. With Shading::kVertex they are those of posts, but flat where colours are slope or aspect: whoever draws light
+// of vertices takes `lit` and what follows from it out of them.
 ShadingParams shading_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                              std::shared_ptr<const vpe::core::ColourScale> scale);
 // Returns whether an appearance shows a colour scale.
@@ -141,6 +143,15 @@ class TerrainShader {
   // PlanetError.
   ShadedTile shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
                           const ShadingParams& params) const;
+
+  // Computes the normal of each vertex of a tile's mesh, body-fixed and unit: inside the tile the mean of the normals of the
+  // triangles around it, weighted by their areas. On the tile's border it is that of the tile's posts, linear between
+  // two of them, so that it is the same in the tile of the same level across the border, whatever both draw; at the
+  // cube's corners, where three tiles meet, it is not. Where params.lit and params.shadows, a vertex that the ground hides
+  // from the sun gets -params.sun. Heights as for shade_facets(); of the params, exaggeration counts besides. Throws
+  // PlanetError.
+  std::vector<glm::vec3> vertex_normals(const lod::TileKey& key, const lod::TileMesh& mesh,
+                                        std::span<const double> height_m, const ShadingParams& params) const;
 
   // Keeps the tiles that colour_at() used last. Use one for each thread and each shader.
   class Cursor {

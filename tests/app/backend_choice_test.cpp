@@ -55,6 +55,7 @@ TEST(BackendChoice, RequestsAboutTrianglesAreDrawnByPolygons) {
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kWireframe; });
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kMarkers; });
   expect_triangles([](auto& r) { r.settings.shading = core::Shading::kFlat; });
+  expect_triangles([](auto& r) { r.settings.shading = core::Shading::kVertex; });
   expect_triangles([](auto& r) { r.settings.inspect = core::Inspect::kLevels; });
   expect_triangles([](auto& r) { r.settings.lod_triangles = 1000; });
   expect_triangles([](auto& r) { r.cull_view = r.view; });

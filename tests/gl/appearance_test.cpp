@@ -54,7 +54,7 @@ std::vector<core::Appearance> appearances() {
   std::vector<core::Appearance> all;
   for (const auto mode : {core::Mode::kWireframe, core::Mode::kMarkers, core::Mode::kUnlit, core::Mode::kLit,
                           core::Mode::kColoured, core::Mode::kTextured}) {
-    for (const auto shading : {core::Shading::kFlat, core::Shading::kGouraud}) {
+    for (const auto shading : {core::Shading::kFlat, core::Shading::kGouraud, core::Shading::kVertex}) {
       for (const auto colour : {core::Colour::kNone, core::Colour::kElevation, core::Colour::kSlope}) {
         core::Appearance& a = all.emplace_back();
         a.mode = mode;
@@ -119,6 +119,11 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
     }
     EXPECT_EQ(vertex_bytes(a) == 16U, p.method == vpe::gl::PaintMethod::kTexture && !p.shading.flat);
     EXPECT_EQ(p.shading.scale != nullptr, paging::needs_scale(a, true));
+    // Normals, 4 bytes a vertex more, are for light of vertices alone; textures then have no light.
+    const bool is_lit =
+        a.mode == core::Mode::kLit || a.mode == core::Mode::kColoured || a.mode == core::Mode::kTextured;
+    EXPECT_EQ(p.light.has_value(), a.shading == core::Shading::kVertex && is_lit);
+    EXPECT_EQ(p.shading.lit, a.shading != core::Shading::kVertex && is_lit);
     if (a.mode == core::Mode::kWireframe) {
       EXPECT_FALSE(textured);
       EXPECT_EQ(vertex_bytes(a), 12U);
@@ -128,6 +133,29 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   unlit.mode = core::Mode::kUnlit;
   EXPECT_EQ(vertex_bytes(unlit), 12U);
   EXPECT_EQ(needs(unlit).method, vpe::gl::PaintMethod::kPalette);
+}
+
+// Textures of light of vertices depend on no sun; meshes do, where there are shadows.
+TEST_F(Appearance, TheSunOfVerticesIsNoPartOfTextures) {
+  core::Appearance a;
+  a.shading = core::Shading::kVertex;
+  const auto material = [&a](const glm::dvec3& sun) { return vpe::gl::material(a, sun, true, nullptr); };
+  const glm::dvec3 x(1, 0, 0), y(0, 1, 0);
+  EXPECT_EQ(material(x).shading, material(y).shading);
+  EXPECT_FALSE(material(x) == material(y));
+  EXPECT_EQ(material(y).light->sun, y);
+  EXPECT_EQ(vpe::gl::shadow_sun(material(y)), std::nullopt);
+  a.shadows = true;
+  EXPECT_EQ(vpe::gl::shadow_sun(material(y)), y);
+  EXPECT_EQ(material(x).shading, material(y).shading);
+  EXPECT_FALSE(vpe::gl::normal_params(2, std::nullopt).shadows);
+  const paging::ShadingParams shadowed = vpe::gl::normal_params(2, y);
+  EXPECT_TRUE(shadowed.lit && shadowed.shadows);
+  EXPECT_EQ(shadowed.sun, y);
+  EXPECT_EQ(shadowed.exaggeration, 2);
+  a.shading = core::Shading::kGouraud;
+  EXPECT_EQ(vpe::gl::shadow_sun(material(y)), std::nullopt);
+  EXPECT_EQ(material(y).light, std::nullopt);
 }
 
 // From orbit meshes are coarse and off by kilometres; colours of elevation must not be.

@@ -71,6 +71,40 @@ TEST(TileGeometryTest, AnOriginNearTheCameraIsExactThere) {
   EXPECT_EQ(g.positions_m[at], glm::vec3(0, 0, 0));
 }
 
+TEST(TileGeometryTest, NormalsAreThoseOfTheVerticesAndOfTheFeetBelow) {
+  const lod::TileMesh mesh = lod::mesh_full(kIntervals);
+  const std::vector<double> heights = heights_of([](int i, int j) { return 10.0 * (i ^ j); });
+  EXPECT_TRUE(make_geometry(kKey, mesh, heights, kRadius_m, {}).normals.empty());
+  Random random(33);
+  std::vector<glm::vec3> normals;
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n) normals.emplace_back(random.direction());
+  const TileGeometry with =
+      make_geometry(kKey, mesh, heights, kRadius_m, {1.0, vpe::gl::kTileCentre, true, normals});
+  const TileGeometry without = make_geometry(kKey, mesh, heights, kRadius_m, {});
+  ASSERT_EQ(with.normals.size(), with.positions_m.size());
+  EXPECT_EQ(with.positions_m, without.positions_m);
+  EXPECT_EQ(with.indices, without.indices);
+  for (std::size_t n = 0; n < normals.size(); ++n) ASSERT_EQ(with.normals[n], vpe::gl::pack_normal(normals[n]));
+  for (std::uint32_t n = with.ranges.skirts[0]; n < with.ranges.skirts[4]; n += 4)
+    for (std::uint32_t k = 0; k < 2; ++k)
+      ASSERT_EQ(with.normals[with.indices[n + k]], with.normals[with.indices[n + 2 + k]]);
+  EXPECT_GE(with.bytes(), without.bytes() + 4 * with.positions_m.size());
+}
+
+TEST(TileGeometryTest, PackedNormalsAreWithinTheStatedAngle) {
+  Random random(34);
+  const auto expect_same = [](const glm::dvec3& d) {
+    const glm::vec3 back = vpe::gl::unpack_normal(vpe::gl::pack_normal(glm::vec3(d)));
+    ASSERT_LT(glm::length(glm::dvec3(back) - d), 1e-4) << d.x << " " << d.y << " " << d.z;
+    ASSERT_NEAR(glm::length(back), 1, 1e-6);
+  };
+  for (int n = 0; n < 200000; ++n) expect_same(random.direction());
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double y : {-1.0, 0.0, 1.0})
+      for (const double z : {-1.0, 0.0, 1.0})
+        if (x != 0 || y != 0 || z != 0) expect_same(glm::normalize(glm::dvec3(x, y, z)));
+}
+
 TEST(TileGeometryTest, TheLongestEdgeIsTheDiagonalOfACell) {
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
   const TileGeometry flat = make_geometry(kKey, mesh, heights_of([](int, int) { return 0.0; }), kRadius_m, {});

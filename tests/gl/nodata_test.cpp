@@ -50,9 +50,15 @@ TEST_F(Nodata, AreStripedInEveryModeAndNothingElseIs) {
                                                               {"at the ground", {10, 20, 20e3, 40, -70, 10}}};
   for (const auto& [name, pose] : poses) {
     DrawRequest request = this->request(pose, planet->radius_m());
-    for (const Mode mode : {Mode::kUnlit, Mode::kLit, Mode::kColoured, Mode::kTextured}) {
+    using vpe::core::Shading;
+    for (const auto& [mode, shading] :
+         {std::pair(Mode::kUnlit, Shading::kGouraud), std::pair(Mode::kLit, Shading::kGouraud),
+          std::pair(Mode::kColoured, Shading::kGouraud), std::pair(Mode::kTextured, Shading::kGouraud),
+          std::pair(Mode::kLit, Shading::kVertex)}) {
       request.settings.mode = mode;
-      SCOPED_TRACE(std::string(name) + " " + std::to_string(static_cast<int>(mode)));
+      request.settings.shading = shading;
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(static_cast<int>(mode)) + " " +
+                   std::to_string(static_cast<int>(shading)));
       const DrawResult result = draw->draw(request);
       const int w = result.frame.width;
       const int h = result.frame.height;

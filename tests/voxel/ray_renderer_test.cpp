@@ -417,6 +417,9 @@ TEST_F(Rays, RefusesWhatItCannotDraw) {
   request.settings.mode = core::Mode::kWireframe;
   EXPECT_THROW(draw->draw(request), std::runtime_error);
   request.settings.mode = core::Mode::kLit;
+  request.settings.shading = core::Shading::kVertex;
+  EXPECT_THROW(draw->draw(request), std::runtime_error);
+  request.settings.shading = core::Shading::kGouraud;
   request.settings.inspect = core::Inspect::kBorders;
   EXPECT_THROW(draw->draw(request), std::runtime_error);
   request.settings.inspect = core::Inspect::kNone;

@@ -227,6 +227,12 @@ void PolygonRenderer::set_material(const core::DrawRequest& request) {
   tiles_.set_exaggeration(appearance.exaggeration);
   tiles_.set_air({glm::vec3(request.sun), static_cast<float>(appearance.haze_visibility_m),
                   glm::vec3(core::air_of(appearance.atmosphere).haze / 255.0)});
+  std::optional<SunLight> light;
+  if (const std::optional<VertexLight>& of_vertices = scene_.material().light) {
+    light = SunLight{glm::vec3(of_vertices->sun), static_cast<float>(of_vertices->ambient),
+                     static_cast<float>(of_vertices->diffuse)};
+  }
+  tiles_.set_light(light);
   if (appearance.background != core::Background::kSky) sky_program_ = {};
 }
 

@@ -35,6 +35,10 @@ GpuMesh upload(const TileGeometry& geometry) {
     mesh.charts = Buffer::make();
     vertex_bytes += store(mesh.charts, geometry.charts) + kBufferBytes;
   }
+  if (!geometry.normals.empty()) {
+    mesh.normals = Buffer::make();
+    vertex_bytes += store(mesh.normals, geometry.normals) + kBufferBytes;
+  }
   const std::size_t index_bytes =
       mesh.short_indices
           ? store(mesh.indices, std::vector<std::uint16_t>(geometry.indices.begin(), geometry.indices.end()))

@@ -20,7 +20,8 @@ using paging::ShadingParams;
 
 struct GpuMesh {
   Buffer positions;
-  Buffer charts;  // none: no textures
+  Buffer charts;   // none: no textures
+  Buffer normals;  // none: no light of vertices
   Buffer indices;
   bool short_indices = false;  // 16 bits
   glm::dvec3 centre_m{0, 0, 0};
@@ -54,6 +55,7 @@ struct MeshDetail {
   int variant = 0;
   int origin = kTileCentre;  // what positions are relative to (make_geometry)
   bool charts = true;
+  bool normals = false;
   bool operator==(const MeshDetail&) const = default;
 };
 // Identifies one of a tile's textures.

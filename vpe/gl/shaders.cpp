@@ -42,6 +42,7 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
   if (features.nodata_image) define(head, "NODATA_IMAGE");
   if (features.haze) define(head, "HAZE");
   if (features.placed) define(head, "PLACED");
+  if (features.light) define(head, "LIGHT");
   if (features.texture || features.nodata) define(head, "CHART");
   const bool skirt = part == TilePart::kSkirt;
   ShaderSources out;

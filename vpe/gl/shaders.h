@@ -40,6 +40,8 @@ inline constexpr auto kTileUniforms = std::to_array<std::string_view>({
     "tile_phase",     // uint: u + v at the tile's southwest corner, its fraction in 2^-32; NODATA only
     "height_terms",   // vec3: |centre|^2 - radius^2, radius, 1 / exaggeration
     "palette_terms",  // vec2: palette coordinate = height * x + y
+    "light_sun",      // vec3: towards the sun, body-fixed; LIGHT only
+    "light_terms",    // vec2: ambient and diffuse light; LIGHT only
     "haze",           // vec4: colour by day, extinction per metre
     "up",             // vec3: the vertical at the camera, in camera coordinates
     "sun",            // vec3: towards the sun, in camera coordinates
@@ -79,6 +81,7 @@ struct TileFeatures {
   bool nodata_image = false;  // the stripes are over the image
   bool haze = false;
   bool placed = false;  // texture coordinates come from positions, not from vertices: within 1e-7 of the face
+  bool light = false;   // colours are multiplied with light of the vertices
   bool by_triangle = false;  // of surfaces: corners are put on the rasteriser's grid triangle by triangle
   auto operator<=>(const TileFeatures&) const = default;
 };

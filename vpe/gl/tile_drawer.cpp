@@ -36,6 +36,7 @@ TileFeatures TileDrawer::features_of(const TileDraw& tile, TilePart part) const 
   features.nodata_image = features.nodata && tile.texture->nodata_image;
   features.haze = air_.visibility_m > 0.0F;
   features.placed = features.texture && !tile.mesh->charts;
+  features.light = light_.has_value() && tile.mesh->normals;
   return features;
 }
 
@@ -78,7 +79,9 @@ TileDrawer::TileDrawer(double planet_radius_m) : radius_m_(planet_radius_m), arr
   glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, 0);
   glVertexArrayAttribBinding(array, 0, 0);
+  glVertexArrayAttribFormat(array, 2, 2, GL_SHORT, GL_TRUE, 0);
   glVertexArrayAttribBinding(array, 1, 1);
+  glVertexArrayAttribBinding(array, 2, 2);
   GLint bits = 0;
   glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
   check_gl("set up drawing of tiles");
@@ -100,6 +103,14 @@ void TileDrawer::use(const Program& program, const TileFeatures& features, TileP
   } else {
     glUniform3f(tile_uniform("ribbon"), 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y),
                 static_cast<float>(kRibbonSteps * step_px_));
+  }
+  if (features.light != reads_normals_) {
+    reads_normals_ = features.light;
+    (reads_normals_ ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(array_.name(), 2);
+  }
+  if (features.light) {
+    glUniform3fv(tile_uniform("light_sun"), 1, &light_->sun[0]);
+    glUniform2f(tile_uniform("light_terms"), light_->ambient, light_->diffuse);
   }
   if (features.palette) {
     glUniform2fv(tile_uniform("palette_terms"), 1, &palette_terms_[0]);
@@ -183,6 +194,7 @@ void TileDrawer::use(const TileDraw& tile, const TileFeatures& features, TilePar
                 static_cast<float>(rect.v1 - rect.v0), static_cast<float>(finest));
     glUniform1ui(tile_uniform("tile_phase"), static_cast<GLuint>((corner - std::floor(corner)) * 0x1p32));
   }
+  if (features.light) glVertexArrayVertexBuffer(array_.name(), 2, mesh.normals.name(), 0, sizeof(VertexNormal));
   glVertexArrayVertexBuffer(array_.name(), 0, mesh.positions.name(), 0, sizeof(VertexPosition));
   glVertexArrayElementBuffer(array_.name(), mesh.indices.name());
 }

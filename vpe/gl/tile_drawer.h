@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,6 +42,13 @@ struct Air {
   glm::vec3 haze{0};       // colour in full light, 0 to 1
 };
 
+// Describes the light of the vertices of meshes with normals: core::light(ambient, diffuse, cosine).
+struct SunLight {
+  glm::vec3 sun{1, 0, 0};  // towards the sun, body-fixed, unit
+  float ambient = 0;
+  float diffuse = 1;
+};
+
 // Holds the colours of heights from low to high, metres, evenly spaced.
 struct PaletteTable {
   double low = 0;
@@ -63,6 +71,7 @@ struct PaletteTable {
 //
 //   drawer.set_palette(nullptr);
 //   drawer.set_air({sun, 0});
+//   drawer.set_light(std::nullopt);
 //   drawer.set_exaggeration(1);
 //   drawer.draw(view, projection, tiles);
 //   drawer.drop_unused();
@@ -73,6 +82,9 @@ class TileDrawer {
   // Sets the palette of the draws that follow. null: no tile shows a palette. The table is copied.
   void set_palette(const PaletteTable* table);
   void set_air(const Air& air) { air_ = air; }
+  // Sets the light of the draws that follow: the colours of tiles whose meshes have normals are multiplied with that of their
+  // vertices, interpolated over each triangle. None: colours are as they are.
+  void set_light(const std::optional<SunLight>& light) { light_ = light; }
   void set_exaggeration(double exaggeration) { exaggeration_ = exaggeration; }
 
   // Drops programs that have not drawn since the last call.
@@ -127,9 +139,11 @@ class TileDrawer {
   double exaggeration_ = 1;
   std::map<std::pair<TilePart, TileFeatures>, UsedProgram> programs_;
   Air air_;
+  std::optional<SunLight> light_;
   Texture2D palette_;
   glm::vec2 palette_terms_{0, 0};
   VertexArray array_;
+  bool reads_normals_ = false;  // array_ does
   double step_px_ = 1.0 / 256;
   const TileDraw* first_with_id_ = nullptr;  // not null: IDs are drawn, relative to this tile
 };

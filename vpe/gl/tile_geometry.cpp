@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <unordered_map>
 
@@ -38,11 +39,31 @@ std::size_t nearest_vertex(const lod::TileMesh& mesh, int origin) {
   return best;
 }
 
+float sign_of(float x) { return x >= 0.0F ? 1.0F : -1.0F; }
+
+// The fold of the octahedron's lower half over the upper one; its own inverse.
+glm::vec2 folded(const glm::vec2& p) {
+  return {(1.0F - std::abs(p.y)) * sign_of(p.x), (1.0F - std::abs(p.x)) * sign_of(p.y)};
+}
+
 }  // namespace
+
+VertexNormal pack_normal(const glm::vec3& unit) {
+  glm::vec2 p = glm::vec2(unit.x, unit.y) / (std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z));
+  if (unit.z < 0.0F) p = folded(p);
+  const auto step = [](float x) { return static_cast<std::int16_t>(std::lround(32767.0F * x)); };
+  return {step(p.x), step(p.y)};
+}
+
+glm::vec3 unpack_normal(const VertexNormal& normal) {
+  const glm::vec2 p(static_cast<float>(normal.x) / 32767.0F, static_cast<float>(normal.y) / 32767.0F);
+  const float z = 1.0F - std::abs(p.x) - std::abs(p.y);
+  return glm::normalize(glm::vec3(z < 0.0F ? folded(p) : p, z));
+}
 
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
                            double radius_m, const GeometryOptions& options) {
-  const auto& [exaggeration, origin, with_charts] = options;
+  const auto& [exaggeration, origin, with_charts, normals] = options;
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const mars::ChartRect rect = lod::chart_rect(key);
   TileGeometry out;
@@ -70,6 +91,7 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
     worst2 = std::max(worst2, glm::dot(error, error));
     out.positions_m.push_back(stored);
     if (with_charts) out.charts.push_back({texel(u, rect.u0, rect.u1), texel(v, rect.v0, rect.v1)});
+    if (!normals.empty()) out.normals.push_back(pack_normal(normals[n]));
   }
   out.quantisation_m = std::sqrt(worst2);
   out.surface_vertices = static_cast<std::uint32_t>(out.positions_m.size());
@@ -91,6 +113,7 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
     for (const std::uint32_t v : top) {
       out.positions_m.push_back(out.positions_m[v]);
       if (with_charts) out.charts.push_back(out.charts[v]);
+      if (!normals.empty()) out.normals.push_back(out.normals[v]);
     }
     for (std::uint32_t n = 0; n + 1 < top.size(); ++n) {
       for (const std::uint32_t index : {top[n], top[n + 1], foot + n, foot + n + 1}) {

@@ -22,6 +22,19 @@ struct VertexChart {
 };
 static_assert(sizeof(VertexChart) == 4);
 
+// Unit vector, body-fixed: the normal of a vertex, for light of vertices alone. The octahedron |x| + |y| + |z| = 1 with its
+// lower half folded over the upper one, in steps of 1/32767.
+struct VertexNormal {
+  std::int16_t x = 0;
+  std::int16_t y = 0;
+  bool operator==(const VertexNormal&) const = default;
+};
+static_assert(sizeof(VertexNormal) == 4);
+
+// Converts a unit vector to the stored form, and back as the vertex shader does: off by less than 1e-4 radians.
+VertexNormal pack_normal(const glm::vec3& unit);
+glm::vec3 unpack_normal(const VertexNormal& normal);
+
 // Ranges of a tile's parts in its indices.
 struct IndexRanges {
   std::uint32_t surface = 0;  // triangles of the mesh: [0, surface)
@@ -34,6 +47,7 @@ struct TileGeometry {
   glm::dvec3 centre_m{0, 0, 0};
   std::vector<VertexPosition> positions_m;  // of the mesh, then of the feet of the skirts
   std::vector<VertexChart> charts;          // as many, or none
+  std::vector<VertexNormal> normals;        // as many, or none
   std::uint32_t surface_vertices = 0;       // number of vertices of the mesh
   std::vector<std::uint32_t> indices;
   IndexRanges ranges;
@@ -41,7 +55,7 @@ struct TileGeometry {
   double longest_edge_m = 0;  // longest edge of a triangle of the mesh
   std::size_t bytes() const {
     return positions_m.capacity() * sizeof(VertexPosition) + charts.capacity() * sizeof(VertexChart) +
-           indices.capacity() * 4;
+           normals.capacity() * sizeof(VertexNormal) + indices.capacity() * 4;
   }
 };
 
@@ -54,6 +68,8 @@ struct GeometryOptions {
   // near that rounding relative to the centre would be visible.
   int origin = kTileCentre;
   bool charts = true;  // false: no chart coordinates, which saves 4 bytes a vertex
+  // One per vertex of the mesh, unit; none: no normals, which saves 4 bytes a vertex.
+  std::span<const glm::vec3> normals = {};
 };
 
 // Makes the vertices and indices of a tile. height_m: one per vertex, above the sphere. The feet of the skirts

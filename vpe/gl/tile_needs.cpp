@@ -29,6 +29,18 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
   return nearest(lines.v, camera.v) * (intervals + 1) + nearest(lines.u, camera.u);
 }
 
+// Takes the light out of the parameters of textures. What is not used has its default.
+VertexLight take_light(ShadingParams& shading) {
+  const VertexLight light{shading.sun, shading.ambient, shading.diffuse, shading.shadows};
+  const ShadingParams defaults;
+  shading.lit = false;
+  shading.sun = defaults.sun;
+  shading.ambient = defaults.ambient;
+  shading.diffuse = defaults.diffuse;
+  shading.shadows = defaults.shadows;
+  return light;
+}
+
 }  // namespace
 
 TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
@@ -36,6 +48,7 @@ TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has
   TileMaterial out;
   out.shows_nodata = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
   out.shading = paging::shading_params(a, sun, has_image, std::move(scale));
+  if (a.shading == core::Shading::kVertex && out.shading.lit) out.light = take_light(out.shading);
   const ShadingParams& shading = out.shading;
   out.method = shading.lit                                             ? PaintMethod::kTexture
                : shading.colour_source == paging::ColourSource::kPlain ? PaintMethod::kColour
@@ -45,6 +58,11 @@ TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has
   if (out.method == PaintMethod::kPalette && shading.scale)
     out.palette_error_m = std::abs(shading.scale->high() - shading.scale->low()) / 256;
   return out;
+}
+
+std::optional<glm::dvec3> shadow_sun(const TileMaterial& material) {
+  if (!material.light || !material.light->shadows) return std::nullopt;
+  return material.light->sun;
 }
 
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material) {
@@ -70,7 +88,8 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
   std::vector<TileNeed> needs;
   needs.reserve(tiles.size());
   for (const lod::SelectedTile& tile : tiles) {
-    TileNeed need{{tile.variant, origin(tile, view, planet), needs_charts(tile.key, planet, options.material)},
+    TileNeed need{{tile.variant, origin(tile, view, planet), needs_charts(tile.key, planet, options.material),
+                   options.material.light.has_value()},
                   0};
     if (!is_textured(tile.key, planet, options.material)) {
     } else if (options.material.shading.flat) {

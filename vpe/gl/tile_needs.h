@@ -1,6 +1,7 @@
 // Mesh and texture that a tile is to be drawn with: pure functions of the view and the settings.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,12 +20,23 @@ enum class PaintMethod {
   kTexture,  // ShadedTile: a grid, or facets with flat shading
 };
 
+// Describes the light that is computed at the vertices of the drawn triangles and interpolated over them (Shading::kVertex).
+struct VertexLight {
+  glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun
+  double ambient = 0;       // core::light()
+  double diffuse = 1;
+  bool shadows = false;
+  bool operator==(const VertexLight&) const = default;
+};
+
 // Describes how ground is drawn in an appearance.
 struct TileMaterial {
   PaintMethod method = PaintMethod::kTexture;
   bool shows_nodata = true;    // nodata ground looks different: its tiles have textures with every method
   double palette_error_m = 0;  // height error that a palette may show: a 256th of its range
   ShadingParams shading;       // of textures
+  // None: light, if any, is in the textures. Else the textures have none, and do not depend on the sun.
+  std::optional<VertexLight> light = {};
   bool operator==(const TileMaterial&) const = default;
 };
 
@@ -32,6 +44,10 @@ struct TileMaterial {
 // (paging::needs_scale).
 TileMaterial material(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                       std::shared_ptr<const core::ColourScale> scale);
+
+// Returns the sun whose shadows are in the normals of vertices; none for materials without such shadows. Meshes of two
+// suns cannot be mixed.
+std::optional<glm::dvec3> shadow_sun(const TileMaterial& material);
 
 inline constexpr int kSmallestTexture = 128;  // intervals
 

@@ -5,6 +5,14 @@
 
 namespace vpe::gl {
 
+ShadingParams normal_params(double exaggeration, const std::optional<glm::dvec3>& shadow_sun) {
+  ShadingParams params;
+  params.exaggeration = exaggeration;
+  params.lit = params.shadows = shadow_sun.has_value();
+  if (shadow_sun) params.sun = *shadow_sun;
+  return params;
+}
+
 template <typename Visit>
 void PageLoader::with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const {
   if (lod::is_full_grid(*planet_->tree().find(tile), variant)) {
@@ -38,8 +46,12 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
       const double radius_m = planet_->radius_m();
       with_mesh(key.tile, key.detail, key.exaggeration,
                 [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
+                  std::vector<glm::vec3> normals;
+                  if (key.normals)
+                    normals = terrain_shader_->vertex_normals(key.tile, mesh, height_m,
+                                                              normal_params(key.exaggeration, key.shadow_sun));
                   page.geometry = make_geometry(key.tile, mesh, height_m, radius_m,
-                                                {key.exaggeration, key.origin, key.charts});
+                                                {key.exaggeration, key.origin, key.charts, normals});
                   if (!key.occluders) return;
                   page.occluders = std::make_shared<const lod::OccluderProfile>(lod::make_occluder_profile(
                       key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));

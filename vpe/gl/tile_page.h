@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,6 +33,9 @@ struct PageKey {
   double exaggeration = 1;                       // meshes and posts only
   std::shared_ptr<const ShadingParams> shading;  // textures only; equal shading is one object
   bool occluders = false;                        // meshes only: with their occluder profile
+  bool normals = false;                          // meshes only
+  // Meshes with normals only: towards the sun that the ground may hide from vertices. None: no shadows.
+  std::optional<glm::dvec3> shadow_sun = {};
   bool operator==(const PageKey&) const = default;
 };
 struct PageKeyHash {
@@ -41,6 +45,10 @@ struct PageKeyHash {
            1009 * static_cast<std::size_t>(k.origin + 1);
   }
 };
+
+// Returns the parameters of the normals of vertices (TerrainShader::vertex_normals) at an exaggeration, with the shadows of
+// a sun or without.
+ShadingParams normal_params(double exaggeration, const std::optional<glm::dvec3>& shadow_sun);
 
 // Converts a variant to the TileNeed::texture of the facets of its mesh, and back.
 constexpr int facet_texture(int variant) { return -1 - variant; }

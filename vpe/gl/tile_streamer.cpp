@@ -104,7 +104,15 @@ void TileStreamer::change_planet(std::shared_ptr<const paging::PlanetFile> plane
   const auto is_other_tile = [&](const lod::TileKey& tile) {
     return planet_->tree().find(tile) == nullptr || before->version(tile) != planet_->version(tile);
   };
-  meshes_.drop([&](const lod::TileKey& tile, const MeshDetail&, std::uint64_t) { return is_other_tile(tile); });
+  const ShadingParams of_normals =
+      normal_params(shading_ ? shading_->exaggeration : 1, gl::shadow_sun(material_));
+  const auto has_other_normals = [&](const lod::TileKey& tile) {
+    return paging::shading_version(*before, tile, paging::MadeOf::kBorders, of_normals) !=
+           paging::shading_version(*planet_, tile, paging::MadeOf::kBorders, of_normals);
+  };
+  meshes_.drop([&](const lod::TileKey& tile, const MeshDetail& m, std::uint64_t) {
+    return is_other_tile(tile) || (m.normals && has_other_normals(tile));
+  });
   textures_.drop([&](const lod::TileKey& tile, const TextureDetail& t, std::uint64_t) {
     return is_other_tile(tile) || is_other_texture(tile, *t.shading);
   });
@@ -155,10 +163,13 @@ bool TileStreamer::set_shading(const core::DrawRequest& request) {
   // Meshes of two exaggerations do not meet; another method needs other vertices and programs.
   const bool other_meshes = !shading_ || shading_->exaggeration != now.shading.exaggeration;
   const bool other_method = material_.method != now.method || material_.shows_nodata != now.shows_nodata ||
-                            material_.shading.flat != now.shading.flat;
-  lost |= (other_meshes || other_method) && meshes_.bytes() > 0;
+                            material_.shading.flat != now.shading.flat ||
+                            material_.light.has_value() != now.light.has_value();
+  const bool other_shadows = gl::shadow_sun(material_) != gl::shadow_sun(now);
+  const bool lose_meshes = other_meshes || other_method || other_shadows;
+  lost |= lose_meshes && meshes_.bytes() > 0;
   if (other_meshes) ground_.clear();
-  if (other_meshes || other_method) meshes_.clear();
+  if (lose_meshes) meshes_.clear();
   if (other_method) textures_.clear();
   material_ = now;
   has_other_shadings_ = true;
@@ -184,15 +195,18 @@ std::vector<TileNeed> TileStreamer::needs_of(const lod::Selection& selection, co
 
 TileNeed TileStreamer::coarse_need(const lod::TileKey& tile) const {
   const bool textured = is_textured(tile);
-  return {{0, kTileCentre, needs_charts(tile, *planet_, material_)},
+  return {{0, kTileCentre, needs_charts(tile, *planet_, material_), material_.light.has_value()},
           !textured        ? 0
           : shading_->flat ? facet_texture(0)
                            : kSmallestTexture};
 }
 
 PageKey TileStreamer::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
-  return {PageKind::kMesh,        tile,    mesh.variant,    mesh.origin, mesh.charts,
-          shading_->exaggeration, nullptr, needs_occluders_};
+  return {PageKind::kMesh, tile,
+          mesh.variant,    mesh.origin,
+          mesh.charts,     shading_->exaggeration,
+          nullptr,         needs_occluders_,
+          mesh.normals,    mesh.normals ? gl::shadow_sun(material_) : std::nullopt};
 }
 
 PageKey TileStreamer::texture_page(const lod::TileKey& tile, int texture) const {
@@ -213,7 +227,7 @@ PageKey TileStreamer::ground_page(const glm::dvec3& camera_m) const {
 bool TileStreamer::is_resident(const PageKey& page, std::uint64_t frame) {
   switch (page.kind) {
     case PageKind::kMesh:
-      return meshes_.find(page.tile, {page.detail, page.origin, page.charts}, frame) != nullptr;
+      return meshes_.find(page.tile, {page.detail, page.origin, page.charts, page.normals}, frame) != nullptr;
     case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.shading}, frame) != nullptr;
     case PageKind::kGround: break;
   }
@@ -281,13 +295,15 @@ void TileStreamer::upload(Pager::Loaded page, std::uint64_t frame) {
           key.charts != needs_charts(key.tile, *planet_, material_))
         return;
       if (needs_occluders_ && !key.occluders) return;
+      if (key.normals != material_.light.has_value() || key.shadow_sun != gl::shadow_sun(material_)) return;
       GpuMesh mesh = gl::upload(page.value.geometry);
       mesh.occluders = std::move(page.value.occluders);
-      meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame);
+      meshes_.insert(key.tile, {key.detail, key.origin, key.charts, key.normals}, std::move(mesh), frame);
       break;
     }
     case PageKind::kTexture:
       if (key.shading->flat != shading_->flat || !gl::is_textured(key.tile, *planet_, material_)) return;
+      if (material_.light && key.shading->lit) return;  // the vertices would light it again
       textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame);
       if (const std::string& why = page.value.coarse_because; !why.empty()) {
         if (coarse_colours_.emplace(key.tile, why).second && failures_.count(key.tile) == 0)

@@ -55,6 +55,8 @@ std::string why_not(const core::DrawRequest& request) {
   const core::Mode mode = request.settings.mode;
   if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
     return "the ray backend has no triangles to show: use --backend polygon for this mode";
+  if (request.settings.shading == core::Shading::kVertex)
+    return "the ray backend has no triangles to light: use --backend polygon for shading=vertex";
   const core::Inspect inspect = request.settings.inspect;
   if (request.cull_view || inspect == core::Inspect::kBorders || inspect == core::Inspect::kLevels)
     return "the ray backend draws no tiles: --cull-from, inspect=borders and inspect=levels show those of --backend "

@@ -83,6 +83,7 @@ TEST_F(Render, AutoChoosesTheBackend) {
   const std::string down = "-74,-13.5,60000,20,-90,0";
   EXPECT_EQ(backend({}, down), "polygon");
   EXPECT_EQ(backend({"--set", "mode=wireframe"}, far), "polygon");
+  EXPECT_EQ(backend({"--set", "shading=vertex"}, far), "polygon");
   EXPECT_EQ(backend({"--explain-lod", "e.json"}, far), "polygon");
   EXPECT_EQ(backend({"--backend", "auto"}, far, "a.png"), vpe::gl::has_gpu() ? "polygon" : "ray");
   if (vpe::gl::has_gpu()) GTEST_SKIP() << "skipped: triangles are drawn wherever there is a GPU";
@@ -106,8 +107,8 @@ TEST_F(Render, WithoutOpenGLRaysDrawWhatNobodyNamed) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(says(result.err, {"drawn by rays, as there is no OpenGL"})) << result.err;
   EXPECT_TRUE(exists("c.png"));
-  for (const Words& named :
-       {Words{"--backend", "polygon"}, Words{"--set", "mode=wireframe"}, Words{"--explain-lod", "e.json"}}) {
+  for (const Words& named : {Words{"--backend", "polygon"}, Words{"--set", "mode=wireframe"},
+                             Words{"--set", "shading=vertex"}, Words{"--explain-lod", "e.json"}}) {
     Words words = down;
     words.insert(words.end(), named.begin(), named.end());
     EXPECT_EQ(without_gl(words).exit_code, 1) << named.front();
@@ -125,7 +126,7 @@ TEST_F(Render, RaysRefuseWhatTheyCannotDo) {
   const std::string pose = "-74,-13.5,60000,20,-20,0";
   for (const Words& words : {Words{"--explain-lod", "e.json"}, Words{"--interest", "-74,-13.5,1e5,2"},
                              Words{"--set", "lod.metric=distance"}, Words{"--set", "lod.centre.weight=3"},
-                             Words{"--set", "lod.triangles=10"}}) {
+                             Words{"--set", "lod.triangles=10"}, Words{"--set", "shading=vertex"}}) {
     Words all{"--backend", "ray"};
     all.insert(all.end(), words.begin(), words.end());
     const Result result = render(all, pose, "no.png");

@@ -229,6 +229,13 @@ TEST_F(Report, PapersPutBothSideBySide) {
   for (const json& quantity : environment["rows"]) EXPECT_GT(quantity["here_to_published"].get<double>(), 0);
   EXPECT_EQ(vpe::core::read_image(dir_ / "out/environment-panorama.png").width, 1504);
   EXPECT_EQ(vpe::core::read_image(dir_ / "out/environment-overlook.png").width, 1280);
+  // The planet has no imagery.
+  const json& texture = report["environment-texture"];
+  expect_csv("out/environment-texture.csv", texture);
+  EXPECT_EQ(texture["rows"].size(), 6U);
+  for (const json& terrain : texture["rows"]) EXPECT_TRUE(terrain["similarity"].is_null());
+  EXPECT_NE(read_text(dir_ / "out/papers.html").find("Not measured: the planet has no imagery."),
+            std::string::npos);
   const json& flythrough = report["flythrough-table-1"];
   expect_csv("out/flythrough-table-1.csv", flythrough);
   EXPECT_EQ(flythrough["rows"].size(), 3U);

@@ -126,6 +126,33 @@ TEST_P(LiveRenderer, AnAnimationEndsWithTheImageOfItsLastState) {
   EXPECT_TRUE(draw->draw(request).frame.colour == first.frame.colour);
 }
 
+// Normals at a tile's border depend on the ground across it, and shadows on ground far away.
+TEST_P(LiveRenderer, LightOfVerticesFollowsTheGround) {
+  if (!is_polygon()) return;  // rays have no triangles
+  const ReliefPatcher patcher(planet_);
+  const mars::LonLat place = live_places()[1];
+  for (const bool shadows : {false, true}) {
+    core::DrawRequest request = test_support::request_for({place.lon_deg - 1, place.lat_deg, 40000, 90, -25, 0},
+                                                          planet_->radius_m(), 96, 72);
+    request.settings.mode = core::Mode::kLit;
+    request.settings.shading = core::Shading::kVertex;
+    request.settings.shadows = shadows;
+    request.sun = mars::sun_direction(place, 315, 5);
+    const auto draw = make(planet_);
+    const core::DrawResult first = draw->draw(request);
+    for (const double depth_m : {900.0, 1800.0}) {
+      const Planet patched = patcher.with(std::vector<ReliefSpec>{crater_at(place, 25000, 2500, depth_m)},
+                                          {.full_grids = full_grids(), .threads = 2});
+      paging::change_planet(*draw, patched);
+      const core::DrawResult next = draw->draw(request);
+      EXPECT_TRUE(next.frame.colour == make(patched)->draw(request).frame.colour);
+      EXPECT_FALSE(next.frame.colour == first.frame.colour);
+    }
+    paging::change_planet(*draw, patcher.with({}));
+    EXPECT_TRUE(draw->draw(request).frame.colour == first.frame.colour);
+  }
+}
+
 // Pixels whose ground lies outside of the tiles that the patch made, and whose rays pass none of these, stay as they were.
 TEST_P(LiveRenderer, ImagesDifferWithinTheReachAlone) {
   const mars::LonLat place = live_places()[5];

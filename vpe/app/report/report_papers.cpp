@@ -19,7 +19,10 @@
 #include "vpe/app/report/papers/papers_relief.h"
 #include "vpe/app/report/papers/papers_stereo.h"
 #include "vpe/app/report/papers/papers_terrain.h"
+#include "vpe/app/report/papers/papers_texture.h"
+#include "vpe/app/report/papers/papers_triangles.h"
 #include "vpe/app/report/report_commands.h"
+#include "vpe/app/report/report_error_time_views.h"
 #include "vpe/app/report/report_folder.h"
 
 namespace vpe::app {
@@ -70,6 +73,20 @@ EnvironmentPaperPlan make_environment_plan(const PapersArguments& arguments, con
   return plan;
 }
 
+TexturePaperPlan make_texture_plan(const PapersArguments& arguments, const StereoPaperPlan& stereo,
+                                   const std::shared_ptr<const paging::PlanetFile>& planet) {
+  TexturePaperPlan plan;
+  const paging::Surface surface(planet, stereo.memory_bytes / 8);
+  for (const NamedView& view : arguments.planet.empty() ? embedded_views(surface) : views_of(surface))
+    if (!arguments.brief || plan.views.size() < 3) plan.views.push_back({view.name, view.pose});
+  plan.width_px = arguments.brief ? 160 : stereo.view.width;
+  plan.height_px = arguments.brief ? 128 : stereo.view.height;
+  plan.fov_deg = arguments.fov_deg;
+  plan.rounds = stereo.rounds;
+  plan.memory_bytes = stereo.memory_bytes;
+  return plan;
+}
+
 report::Page report_papers(const PapersArguments& arguments, const Common& common) {
   const std::filesystem::path folder = arguments.folder;
   check_report_folder(folder);
@@ -79,6 +96,7 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   const StereoPaperPlan plan = make_plan(arguments, common, planet);
   const TerrainPaperPlan terrain_plan{plan.threads, plan.rounds, arguments.brief};
   const EnvironmentPaperPlan environment_plan = make_environment_plan(arguments, plan, planet);
+  const TexturePaperPlan texture_plan = make_texture_plan(arguments, plan, planet);
   const FlythroughPaperPlan flythrough_plan{arguments.fov_deg, plan.threads, plan.rounds, arguments.brief,
                                             plan.memory_bytes};
   const ReliefPaperPlan relief_plan{.rounds = plan.rounds, .is_short = arguments.brief};
@@ -102,6 +120,11 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   const EnvironmentPaper environment = measure_environment_paper(environment_plan, planet, folder, [&] {
     InterruptGuard::check();
     line.show("environment", static_cast<double>(done++) / count_environment_steps(environment_plan));
+  });
+  done = 0;
+  const TexturePaper texture = measure_texture_paper(texture_plan, planet, folder, [&] {
+    InterruptGuard::check();
+    line.show("texture", static_cast<double>(done++) / count_texture_steps(texture_plan));
   });
   done = 0;
   const ReliefPaper relief = measure_relief_paper(relief_plan, folder, [&] {

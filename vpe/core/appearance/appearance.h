@@ -8,7 +8,7 @@
 
 namespace vpe::core {
 
-// The way the surface is painted. Lit modes are shaded by the sun, unless Appearance::light is false.
+// The way the surface is painted. Lit modes are shaded by the sun, unless Appearance::light says otherwise.
 enum class Mode {
   kWireframe,  // edges of the drawn triangles
   kMarkers,    // a dot at each of their vertices
@@ -22,6 +22,9 @@ enum class Mode {
 enum class Shading {
   kFlat,     // each drawn triangle
   kGouraud,  // each post of the surface; interpolated between posts
+  // Light: each vertex of the drawn triangles, interpolated over them. Slope and aspect: each drawn triangle. Triangles only:
+  // rays refuse it.
+  kVertex,
 };
 
 // The value that the colour of the ground shows.

@@ -27,9 +27,12 @@ const KeyRegistry<SettingsValues>& registry() {
        "how the surface is painted: edges of triangles; a dot at each vertex; colour without light; light "
        "without colour; both; or imagery with light (coloured where there is no imagery)"},
       {"shading",
-       Declare::choice<&V::shading>({word("flat", Shading::kFlat), word("gouraud", Shading::kGouraud)}), "",
+       Declare::choice<&V::shading>({word("flat", Shading::kFlat), word("gouraud", Shading::kGouraud),
+                                     word("vertex", Shading::kVertex)}),
+       "",
        "flat: one light and colour for each drawn triangle; gouraud: light and colour of the posts, "
-       "interpolated between them"},
+       "interpolated between them; vertex: light of the drawn triangles' vertices, interpolated over the "
+       "triangles (backend polygon)"},
       {"colour",
        Declare::choice<&V::colour>({word("none", Colour::kNone), word("elevation", Colour::kElevation),
                                     word("slope", Colour::kSlope), word("aspect", Colour::kAspect),

@@ -1,4 +1,4 @@
-// Colour of ground: from a texture, facets, a palette or one colour; then the nodata pattern, haze and tint.
+// Colour of ground: from a texture, facets, a palette or one colour; then light, the nodata pattern, haze and tint.
 // The fragment shaders of all parts of tiles call colour_ground().
 layout(location = LOCATION_FLAT_COLOUR) uniform vec4 flat_colour;
 layout(location = LOCATION_TINT) uniform vec4 tint;
@@ -49,6 +49,9 @@ float air_length() {
   return size * sum;
 }
 #endif
+#ifdef LIGHT
+layout(location = 5) in float light;
+#endif
 layout(location = 0) out vec4 colour;
 #ifdef NODATA
 void show_nodata(inout vec4 colour, bool has_data);
@@ -89,7 +92,13 @@ void colour_ground() {
 #ifndef FACETS
   bool has_data = facet_has_data(at);
 #endif
+#ifdef LIGHT
+  // Stripes over an image are without light, as in textures.
+  if (has_data) colour.rgb *= light;
+#endif
   show_nodata(colour, has_data);
+#elif defined(LIGHT)
+  colour.rgb *= light;
 #endif
 #ifdef HAZE
   // core::haze_colour() over the ground.

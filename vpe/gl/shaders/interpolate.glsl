@@ -12,6 +12,10 @@ layout(location = 3) out float height;
 layout(location = 4) in vec4 corner_camera_position[];
 layout(location = 4) out vec4 camera_position;
 #endif
+#ifdef LIGHT
+layout(location = 5) in float corner_light[];
+layout(location = 5) out float light;
+#endif
 #ifdef FACETS
 layout(location = LOCATION_FIRST_FACET) uniform int first_facet;
 #endif
@@ -25,6 +29,9 @@ void interpolate(int from, int to, float share) {
 #endif
 #ifdef HAZE
   camera_position = mix(corner_camera_position[from], corner_camera_position[to], share);
+#endif
+#ifdef LIGHT
+  light = mix(corner_light[from], corner_light[to], share);
 #endif
 #ifdef FACETS
   gl_PrimitiveID = first_facet + gl_PrimitiveIDIn;

@@ -30,6 +30,19 @@ layout(location = 3) out float height;
 #ifdef HAZE
 layout(location = 4) out vec4 camera_position;  // and the drawn height above the sphere
 #endif
+#ifdef LIGHT
+layout(location = 2) in vec2 packed_normal;
+layout(location = LOCATION_LIGHT_SUN) uniform vec3 light_sun;
+layout(location = LOCATION_LIGHT_TERMS) uniform vec2 light_terms;
+layout(location = 5) out float light;
+
+// Returns unpack_normal() of vpe/gl/tile_geometry.h.
+vec3 unpack_normal(vec2 p) {
+  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  if (n.z < 0.0) n.xy = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+  return normalize(n);
+}
+#endif
 
 void main() {
   vec3 p = position;
@@ -58,6 +71,10 @@ void main() {
   if (steps.x > 0.0 && gl_Position.w > snap_from && far_out < 4.0 * gl_Position.w) {
     gl_Position.xy = round(gl_Position.xy / gl_Position.w * steps) / steps * gl_Position.w;
   }
+#ifdef LIGHT
+  // core::light().
+  light = sqrt(light_terms.x + light_terms.y * max(dot(unpack_normal(packed_normal), light_sun), 0.0));
+#endif
 #ifdef CHART
   // Texture coordinates are gnomonic: a ratio of two functions that are linear on the flat triangle.
   float depth = dot(face_out, from_centre) * 1e-6;
