@@ -7,6 +7,7 @@
 // DIR holds the planets of ray_bench, or receives them.
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <map>
 
 #include "mars/geodesy/pose.h"
@@ -21,10 +22,16 @@ using vpe::core::View;
 using vpe::voxel::RangeCaster;
 using vpe::voxel::RangeOptions;
 
-constexpr RangeOptions kExact{};
-constexpr RangeOptions kMultires{1, 1};
-constexpr RangeOptions kSingleRays{1, 0, RangeOptions::Method::kSingleRays};
-constexpr RangeOptions kReference{1, 0, RangeOptions::Method::kReference};
+const RangeOptions kExact{};
+const RangeOptions kMultires{1, 1};
+const RangeOptions kSingleRays{1, 0, RangeOptions::Method::kSingleRays};
+const RangeOptions kReference{1, 0, RangeOptions::Method::kReference};
+
+RangeOptions volumes(double near_m) {
+  RangeOptions options{1, 0, RangeOptions::Method::kVolume};
+  options.volume.near_m = near_m;
+  return options;
+}
 
 struct Scene {
   bench::RayScene scene;
@@ -84,6 +91,11 @@ void run(const std::string& dir, int rounds) {
   compare("p10 2049: exact; single rays", {&small, p10, kExact}, {&small, p10, kSingleRays}, rounds, pool);
   compare("pano 2049: exact; single rays", {&small, pano, kExact}, {&small, pano, kSingleRays}, rounds, pool);
   compare("wan 2049: exact; reference", {&small, wan, kExact}, {&small, wan, kReference}, 3, pool);
+  const RangeOptions volume = volumes(std::numeric_limits<double>::infinity());
+  compare("wan 2049: exact; volume", {&small, wan, kExact}, {&small, wan, volume}, rounds, pool);
+  compare("wan 2049: volume; boundary", {&small, wan, volume}, {&small, wan, volumes(0)}, rounds, pool);
+  compare("wan 2049: volume; reference", {&small, wan, volume}, {&small, wan, kReference}, 3, pool);
+  compare("p10 2049: exact; volume", {&small, p10, kExact}, {&small, p10, volume}, rounds, pool);
   compare("p10 2049: multires; exact", {&small, p10, kMultires}, {&small, p10, kExact}, rounds, pool);
   compare("p10 8193: multires; exact", {&large, p10_large, kMultires}, {&large, p10_large, kExact}, rounds,
           pool);

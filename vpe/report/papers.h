@@ -50,6 +50,7 @@ struct PublishedTerrainTimes {
   double conventional_s = 6.71;  // every ray from the camera
   double roll_45_s = 1.04;       // accurate, with a roll of 45 degrees
   double roll_mean_s = 0.96;     // mean of 10 rolls from 0 to 45 degrees
+  double triangles_s = 0.80;     // all triangles with the photograph
 };
 inline constexpr PublishedTerrainTimes kWan1999Times;
 

@@ -171,10 +171,8 @@ void FramePrefetcher::work(Job& job) {
 }
 
 bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const core::View& view) {
-  RangeOptions options = range_options(request, planet_radius_m());
-  if (options.method == RangeOptions::Method::kReference) return false;
-  options.discrete = {};
-  options.cell_px /= kDownsampling;
+  if (range_options(request, planet_radius_m()).method == RangeOptions::Method::kReference) return false;
+  const RangeOptions options = for_hints(range_options(request, planet_radius_m()), kDownsampling);
   const HeightGridStore& store = caster_.store();
   const core::SubRectangle whole = core::drawn_part(view);
   std::vector<float> all_m(drawn_pixels(view));

@@ -111,7 +111,9 @@ ColumnWalk::Usage PixelCaster::cast(const core::View& view, const RangeOptions& 
                                     std::span<float> range_m, TileFallbacks* fallbacks) {
   for (std::size_t n = 0; n < range_m.size(); ++n)
     if (wanted.is_wanted[n] != 0 && wanted.clear_m[n] == core::kSkyRange) range_m[n] = core::kSkyRange;
-  const PixelPlan plan = plan_pixels(view, wanted);
+  const bool has_single_rays = options.method != RangeOptions::Method::kVolume;
+  const PixelPlan plan =
+      has_single_rays ? plan_pixels(view, wanted) : PixelPlan{{core::drawn_part(view)}, {}, 0};
   const lod::TileTree& tree = caster_.surface().planet().tree();
   ColumnWalk::Usage usage;
   for (const core::SubRectangle& strip : plan.strips)

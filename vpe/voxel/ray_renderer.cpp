@@ -456,10 +456,9 @@ ReadingRule RayRenderer::reading_rule(const core::DrawRequest& request, bool rea
 // Finds what upcoming views will lack, with few rays.
 std::vector<TileLoader::Expected> RayRenderer::expected_tiles(const core::DrawRequest& request) {
   std::vector<TileLoader::Expected> out;
-  RangeOptions options = range_options(request, planet_->radius_m());
-  if (options.method == RangeOptions::Method::kReference) return out;
-  options.discrete = {};
-  options.cell_px /= FramePrefetcher::kDownsampling;
+  if (range_options(request, planet_->radius_m()).method == RangeOptions::Method::kReference) return out;
+  const RangeOptions options =
+      for_hints(range_options(request, planet_->radius_m()), FramePrefetcher::kDownsampling);
   for (std::size_t n = 0; n < std::min(request.paging.upcoming.size(), kMostExpected); ++n) {
     core::DrawRequest later = request;
     later.view = request.paging.upcoming[n];
@@ -542,6 +541,8 @@ bool RayRenderer::is_below_ground(const core::DrawRequest& request) const {
   const double exaggeration = request.settings.exaggeration;
   const lod::TileInfo& below =
       planet_->tree().deepest(lod::tile_at(mars::chart_point(camera_m), lod::kMaxLevel));
+  const RangeOptions options = range_options(request, planet_->radius_m());
+  if (options.method == RangeOptions::Method::kVolume) return caster_.is_in_volume(camera_m, options);
   if (distance_m > planet_->radius_m() + exaggeration * below.max_height_m) return false;
   return distance_m < caster_.surface().readable_radius_m(camera_m / distance_m, exaggeration);
 }

@@ -9,6 +9,35 @@
 
 namespace vpe::voxel {
 
+namespace {
+
+VolumeForm volume_form(const core::SettingsValues& values) {
+  VolumeForm form;
+  switch (values.ray_volume_filter) {
+    case core::RayVolumeFilter::kNone: form.band.filter = VolumeFilter::kNone; break;
+    case core::RayVolumeFilter::kGaussian: form.band.filter = VolumeFilter::kGaussian; break;
+    case core::RayVolumeFilter::kBox: form.band.filter = VolumeFilter::kBox; break;
+  }
+  form.interval = values.ray_volume_step;
+  if (values.ray_volume_near_m) form.near_m = *values.ray_volume_near_m;
+  if (values.ray_mode == core::RayMode::kBoundary) form.near_m = 0;
+  return form;
+}
+
+}  // namespace
+
+bool is_volume_mode(core::RayMode mode) {
+  return mode == core::RayMode::kVolume || mode == core::RayMode::kBoundary;
+}
+
+RangeOptions for_hints(RangeOptions options, double downsampling) {
+  // Volumes are made of the same tiles.
+  if (options.method == RangeOptions::Method::kVolume) options.method = RangeOptions::Method::kColumns;
+  options.discrete = {};
+  options.cell_px /= downsampling;
+  return options;
+}
+
 RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m) {
   RangeOptions options;
   options.exaggeration = request.settings.exaggeration;
@@ -18,6 +47,11 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
     options.cell_px = request.settings.ray_ratio * std::max(1.0, request.coarsening);
     options.discrete = {request.settings.ray_columns, request.settings.ray_vertical,
                         request.settings.ray_blend};
+    return options;
+  }
+  if (is_volume_mode(request.settings.ray_mode) && request.coarsening <= 1) {
+    options.method = RangeOptions::Method::kVolume;
+    options.volume = volume_form(request.settings);
     return options;
   }
   // Coarsening, the price of speed, acts on the cells.

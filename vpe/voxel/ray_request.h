@@ -34,6 +34,13 @@ std::string_view multires_control(const core::DrawRequest& request);
 // with the request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
 RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m);
 
+// Returns true for rays.mode=volume and boundary, which cast terrain volumes.
+bool is_volume_mode(core::RayMode mode);
+
+// Returns options that find the same tiles with few rays: those of an image with so many times fewer rows and columns. Expects
+// another method than kReference.
+RangeOptions for_hints(RangeOptions options, double downsampling);
+
 // Returns the patches of a request that shows smooth ground: rays.mode=perturbation without coarsening. Coarser images are
 // cast in cells of the tiles, as in the other modes.
 std::optional<SmoothForm> smooth_form(const core::DrawRequest& request);

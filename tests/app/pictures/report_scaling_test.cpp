@@ -279,6 +279,17 @@ TEST_F(Report, PapersPutBothSideBySide) {
     EXPECT_EQ(image.height, 400);
   }
 
+  const json& triangles = report["terrain-triangles"];
+  expect_csv("out/terrain-triangles.csv", triangles);
+  ASSERT_EQ(triangles["rows"].size(), 4U);
+  EXPECT_EQ(triangles["rows"][0]["published_s"], 0.80);
+  EXPECT_EQ(triangles["rows"][1]["published_s"], 0.92);
+  EXPECT_GT(triangles["rows"][0]["triangles"].get<double>(), 100000);
+  for (const json& way : triangles["rows"]) EXPECT_GT(way["to_accurate"].get<double>(), 0);
+  EXPECT_EQ(vpe::core::read_image(dir_ / "out/terrain-triangles.png").width, 500);
+  EXPECT_EQ(vpe::core::read_image(dir_ / "out/terrain-volume.png").width, 500);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out/triangles-terrain.vpe"));
+
   const std::vector<std::pair<int, int>> published{{1024, 59}, {512, 58}, {128, 58}, {64, 57}};
   for (const char* name : {"relief-bilinear", "relief-bilinear-half-pixel"}) {
     const json& table = report[name];

@@ -50,7 +50,7 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
   if (options.backend) return {*options.backend, settings};
   // No other backend has it.
   const core::RayMode mode = settings.values().ray_mode;
-  if (mode == core::RayMode::kPerturbation || mode == core::RayMode::kDiscrete)
+  if (mode == core::RayMode::kPerturbation || mode == core::RayMode::kDiscrete || voxel::is_volume_mode(mode))
     return {core::Backend::kRay, settings};
   const auto for_rays = std::count_if(images.begin(), images.end(), [&](const core::DrawRequest& request) {
     return glm::length(request.view.camera.position_m) < (1 + core::kRaysReach_radii) * radius_m &&

@@ -112,6 +112,12 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
     line.show("terrain", static_cast<double>(done++) / count_steps(terrain_plan));
   });
   done = 0;
+  const TrianglesPaperPlan triangles_plan{plan.rounds, plan.memory_bytes};
+  const TrianglesPaper triangles = measure_triangles_paper(triangles_plan, folder, [&] {
+    InterruptGuard::check();
+    line.show("triangles", static_cast<double>(done++) / count_triangles_steps(triangles_plan));
+  });
+  done = 0;
   const FlythroughPaper flythrough = measure_flythrough_paper(flythrough_plan, folder, [&] {
     InterruptGuard::check();
     line.show("flythrough", static_cast<double>(done++) / count_steps(flythrough_plan));
@@ -132,8 +138,8 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
     line.show("relief", static_cast<double>(done++) / count_steps(relief_plan));
   });
   std::vector<report::Table> tables;
-  for (const auto* own :
-       {&environment.tables, &stereo.tables, &terrain.tables, &flythrough.tables, &relief.tables})
+  for (const auto* own : {&environment.tables, &texture.tables, &stereo.tables, &terrain.tables,
+                          &triangles.tables, &flythrough.tables, &relief.tables})
     tables.insert(tables.end(), own->begin(), own->end());
 
   report::Page page;
@@ -141,7 +147,8 @@ report::Page report_papers(const PapersArguments& arguments, const Common& commo
   page.paragraphs = report::to_paragraphs(facts);
   page.paragraphs.push_back("Panorama and stereo: planet " + planet->path() + ", pose " + arguments.pose +
                             ", " + arguments.size + " pixels in stereo.");
-  page.sections = {environment.section, stereo.section, terrain.section, flythrough.section, relief.section};
+  page.sections = {environment.section, texture.section,    stereo.section, terrain.section,
+                   triangles.section,   flythrough.section, relief.section};
   nlohmann::json json{{"run", report::to_json(facts)}, {"load_after", report::load_now()},
                       {"planet", planet->path()},      {"pose", arguments.pose},
                       {"size", arguments.size},        {"eye_base_m", stereo.eye_base_m}};
@@ -170,7 +177,7 @@ void add_report_papers(CLI::App& report, Common& common) {
   CLI::App* command = add_command(
       report, "papers",
       "Measure what the papers that vpe follows have published, and put both side by side; so "
-      "far the figures of merit of Hitchner (1992), the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, Table 1, Figs 6 and 7 and the times "
+      "far the figures of merit and textures in place of triangles of Hitchner (1992), the two tables and Fig. 8 of Wan and others (2000), stereo by reprojection, Table 1, Figs 6 and 7 and the times "
       "of section 7 of Wan and others (1999), terrain as a volume, Table 1, the pixel-to-voxel ratio and the database of Cohen-Or and others (1996), flythrough by discrete rays, and the table and Figs 6 to 8 of Vyatkin and Dolgovesov (2002), relief by perturbation functions",
       common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
@@ -198,8 +205,9 @@ void add_report_papers(CLI::App& report, Common& common) {
   command->add_option("--rounds", arguments->rounds, "Number of times that each image is timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--short", arguments->brief,
-                    "Two rounds on one thread, bilinear relief, 3 rolls and 3 ratios only; under a minute");
+  command->add_flag(
+      "--short", arguments->brief,
+      "Two rounds on one thread, bilinear relief, 3 rolls, 3 ratios and 3 views with textures only; under a minute");
   add_examples(*command, {{"under a minute", "vpe report papers --short -o papers"},
                           {"images of today's size", "vpe report papers mars.vpe --size 1920x1080 -o papers"}});
   command->callback([arguments, &common] { report_papers(*arguments, common); });

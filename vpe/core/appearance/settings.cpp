@@ -168,11 +168,13 @@ const KeyRegistry<SettingsValues>& registry() {
        Declare::choice<&V::ray_mode>({word("exact", RayMode::kExact), word("multires", RayMode::kMultires),
                                       word("reference", RayMode::kReference),
                                       word("perturbation", RayMode::kPerturbation),
-                                      word("discrete", RayMode::kDiscrete)}),
+                                      word("discrete", RayMode::kDiscrete), word("volume", RayMode::kVolume),
+                                      word("boundary", RayMode::kBoundary)}),
        "",
        "backend ray: exact casts against the exact surface; multires takes coarser cells far away; reference "
        "follows each ray in steps of 0.6 cells, slowly, for comparison; perturbation casts against smooth patches "
-       "through the same posts, without facets; discrete takes one voxel at each grid line (Cohen-Or 1996)"},
+       "through the same posts, without facets; discrete takes one voxel at each grid line (Cohen-Or 1996); volume "
+       "samples densities of voxels, boundary ends in the first cell that their surface passes (Wan 1999)"},
       {"rays.patch",
        Declare::choice<&V::ray_patch>(
            {word("bicubic", RayPatch::kBicubic), word("bilinear", RayPatch::kBilinear)}),
@@ -197,6 +199,20 @@ const KeyRegistry<SettingsValues>& registry() {
        "",
        "backend ray, mode discrete: columns are vertical planes (sectors), or parallel lines of pixels taken as such, "
        "as in the papers (lines)"},
+      {"rays.volume.filter",
+       Declare::choice<&V::ray_volume_filter>({word("none", RayVolumeFilter::kNone),
+                                               word("gaussian", RayVolumeFilter::kGaussian),
+                                               word("box", RayVolumeFilter::kBox)}),
+       "",
+       "backend ray, modes volume and boundary: densities are full or empty (none), smoothed (gaussian), or follow the "
+       "distance from the ground (box)"},
+      {"rays.volume.step",
+       Declare::number<&V::ray_volume_step>(RayLimits::kLeastVolumeStep, RayLimits::kMostVolumeStep), "",
+       "backend ray, modes volume and boundary: interval of samples, in voxels; larger: faster, narrow ridges may be "
+       "missed"},
+      {"rays.volume.near", Declare::number_or_word<&V::ray_volume_near_m>(0, 1e12, "all"), "m",
+       "backend ray, mode volume: tiles nearer to the camera are cast by densities, the others by boundary cells as in "
+       "mode boundary"},
       {"scene", Declare::text<&V::scene>("a scene file, *.scene.toml or GeoJSON points", no_problem), "",
        "objects on the ground: models and their places"},
       {"samples", Declare::choice<&V::samples>({word("1", 1), word("2", 2), word("4", 4)}), "",

@@ -35,6 +35,8 @@ enum class RayMode {
   kReference,     // follows each ray by itself in fixed steps, as the papers do: the baseline of comparisons
   kPerturbation,  // intersects smooth patches through the posts of the reference surface, in place of flat facets
   kDiscrete,      // samples one voxel at each grid line of a column's path (Cohen-Or 1996)
+  kVolume,        // samples volumes of densities that are made of the posts (Wan, Qu and Kaufman 1999)
+  kBoundary,      // the same, up to the first cell of a volume that its surface passes
 };
 
 // The heights between posts with RayMode::kPerturbation.
@@ -49,9 +51,16 @@ enum class RayColumns {
   kLines,    // parallel lines of pixels, each taken as a vertical plane
 };
 
+// The densities of a volume with RayMode::kVolume and kBoundary.
+enum class RayVolumeFilter {
+  kNone,      // full or empty
+  kGaussian,  // smoothed by a Gaussian
+  kBox,       // by the distance from the ground
+};
+
 enum class Occlusion { kAuto, kOff, kOn };
 
-// Limits of rays.cell, rays.ratio and rays.fovea.
+// Limits of rays.cell, rays.ratio, rays.fovea and rays.volume.step.
 struct RayLimits {
   static constexpr double kLeastCell_px = 1.0 / 64;
   static constexpr double kMostCell_px = 64;
@@ -59,6 +68,8 @@ struct RayLimits {
   static constexpr double kMostRatio = 64;
   static constexpr double kLeastFovea = 0.05;
   static constexpr double kMostFovea = 0.95;
+  static constexpr double kLeastVolumeStep = 0.05;
+  static constexpr double kMostVolumeStep = 2;
 };
 
 // The values of all settings. The keys of the inherited members are in settings.cpp too.
@@ -103,6 +114,12 @@ struct SettingsValues : Appearance, Overlays {
   // ground is seen at a grazing angle.
   int ray_vertical = 1;
   RayColumns ray_columns = RayColumns::kSectors;
+  RayVolumeFilter ray_volume_filter = RayVolumeFilter::kGaussian;
+  // RayMode::kVolume, kBoundary: interval of samples, in voxels. Smaller: narrower ridges are met, slower.
+  double ray_volume_step = 0.6;
+  // RayMode::kVolume: tiles nearer than this are cast by densities, the others by boundary cells. Smaller: faster, rougher.
+  // nullopt: all by densities.
+  std::optional<double> ray_volume_near_m;
   std::string scene;         // path of a scene file (objects/files/scene_file.h); "": no objects
   int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
   bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel

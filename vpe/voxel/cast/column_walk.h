@@ -63,11 +63,14 @@ class ColumnWalk {
   bool ends_at(lod::TileTree::Index tile) const;
   // Counts a tile among those that casts have used.
   void mark_used(lod::TileTree::Index tile) const;
+  // Returns a lower bound of the distance from the camera to the tile's posts.
+  double least_distance_m(lod::TileTree::Index tile) const;
   // Returns the tile below the camera that is cast.
   lod::TileTree::Index below_camera() const;
 
   // Returns the radius of the highest ground, as exaggerated.
   double highest_m() const { return highest_m_; }
+  double exaggeration() const { return exaggeration_; }
 
   using Usage = TileUsage;
   // Returns the usage of all casts so far.
@@ -84,9 +87,6 @@ class ColumnWalk {
     double far;
   };
   Angles angles(lod::TileTree::Index tile) const;
-  // Returns a lower bound of the distance from the camera to the tile's posts.
-  double least_distance_m(lod::TileTree::Index tile) const;
-
   // Returns the bound of the distance between the tile's posts as a grid and the reference surface, as the planet
   // file states it; infinite if the file does not record it.
   double measured_error_m(lod::TileTree::Index tile) const;

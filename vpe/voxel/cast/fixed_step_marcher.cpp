@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec4.hpp>
 #include <limits>
 
 #include "vpe/voxel/cast/facet_finder.h"
+#include "vpe/voxel/columns/grid_ray.h"
 
 namespace vpe::voxel {
 
@@ -14,10 +14,8 @@ namespace {
 
 // Returns H of a post of a grid in either precision.
 double post(const Facets& f, int x, int y) {
-  const int line = f.family == LineFamily::kColumns ? x : (f.family == LineFamily::kRows ? y : x - y);
-  const int position = f.family == LineFamily::kColumns ? y : x;
-  return f.exact_lines != nullptr ? f.exact_lines->line(line)[position]
-                                  : static_cast<double>(f.lines->line(line)[position]);
+  return f.exact_lines != nullptr ? post_height(*f.exact_lines, f.family, x, y)
+                                  : static_cast<double>(post_height(*f.lines, f.family, x, y));
 }
 
 // Returns the height of a place above the ground, along the vertical.
@@ -53,44 +51,6 @@ double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, d
   return below;
 }
 
-// A ray in the terms of a height grid, from the distance t0 on. On the way of s metres from there the grid position is
-// (x + s dx) / (z + s dz), likewise y, and the ray's height in the terms of posts (HeightGridLines) is (h + s dh) / (z + s dz):
-// straight lines stay straight in the chart, so that a sample takes one division.
-class GridRay {
- public:
-  GridRay(const glm::dvec3& camera, const glm::dvec3& ray, double t0_m, const Facets& facets, double radius_m)
-      : intervals_(facets.frame.intervals) {
-    const mars::FaceAxes& axes = mars::face_axes(facets.face);
-    const HeightGridFrame& f = facets.frame;
-    const DepthPlane& plane =
-        facets.exact_lines != nullptr ? facets.exact_lines->reference : facets.lines->reference;
-    const glm::dvec3 place = camera + t0_m * ray;
-    const auto at = [&](const glm::dvec3& p, double constant) {
-      const double z = glm::dot(p, axes.out);
-      const double x = (glm::dot(p, axes.right) - f.u0 * z) / f.du;
-      const double y = (glm::dot(p, axes.up) - f.v0 * z) / f.dv;
-      const double h = (plane.w0 * z + plane.wx * x + plane.wy * y - constant) * (radius_m * radius_m);
-      return glm::dvec4(x, y, h, z);
-    };
-    at_ = at(place, 1);
-    per_m_ = at(ray, 0);
-    // The side of a cell, projected to the sphere.
-    const double length = glm::length(place) / at_.w;
-    step_m_ = kReferenceStep * radius_m * std::sqrt(f.du * f.dv) / (length * std::sqrt(length));
-  }
-
-  const glm::dvec4& at() const { return at_; }        // x, y, height, z
-  const glm::dvec4& per_m() const { return per_m_; }  // their changes a metre
-  double step_m() const { return step_m_; }
-  int intervals() const { return intervals_; }
-
- private:
-  glm::dvec4 at_;
-  glm::dvec4 per_m_;
-  double step_m_ = 0;
-  int intervals_ = 0;
-};
-
 // Returns H of post (x, y) of a grid.
 template <LineFamily family, typename T>
 T post_of(const HeightGridLines<T>& lines, int x, int y) {
@@ -108,13 +68,14 @@ struct Steps {
 // Samples a ray within one grid, step by step from its first place, up to `most_m` from there. At least one sample counts
 // as in the grid.
 template <LineFamily family, typename T>
-Steps step_through(const GridRay& ray, const HeightGridLines<T>& lines, double most_m) {
-  const auto size = static_cast<T>(ray.intervals());
-  const int last = ray.intervals() - 1;
+Steps step_through(const GridRay& ray, int intervals, const HeightGridLines<T>& lines, double step_m,
+                   double most_m) {
+  const auto size = static_cast<T>(intervals);
+  const int last = intervals - 1;
   // Moving by a step at a time would add up rounding.
   const glm::vec<4, T> at(ray.at());
-  const glm::vec<4, T> by(ray.per_m() * ray.step_m());
-  const int most = static_cast<int>(std::min(most_m / ray.step_m(), 1e9));
+  const glm::vec<4, T> by(ray.per_m() * step_m);
+  const int most = static_cast<int>(std::min(most_m / step_m, 1e9));
   for (int n = 0;; ++n) {
     const T steps = static_cast<T>(n);
     const T inverse = 1 / (at.w + steps * by.w);
@@ -147,17 +108,22 @@ double march(const glm::dvec3& camera, const glm::dvec3& ray, double begin_m, do
   double above_m = first_m;  // of the last sample
   for (double t = first_m; t <= end_m;) {
     const Facets& facets = finder.at(camera + t * ray);
-    const GridRay grid(camera, ray, t, facets, radius_m);
+    const GridRay grid(camera, ray, t, facets.face, facets.frame,
+                       facets.exact_lines != nullptr ? facets.exact_lines->reference : facets.lines->reference,
+                       radius_m);
+    const double step_m = kReferenceStep * grid.cell_m();
+    const int intervals = facets.frame.intervals;
     const auto in_grid = [&](const auto& lines) {
       switch (facets.family) {
-        case LineFamily::kColumns: return step_through<LineFamily::kColumns>(grid, lines, end_m - t);
-        case LineFamily::kRows: return step_through<LineFamily::kRows>(grid, lines, end_m - t);
+        case LineFamily::kColumns:
+          return step_through<LineFamily::kColumns>(grid, intervals, lines, step_m, end_m - t);
+        case LineFamily::kRows:
+          return step_through<LineFamily::kRows>(grid, intervals, lines, step_m, end_m - t);
         case LineFamily::kDiagonals: break;
       }
-      return step_through<LineFamily::kDiagonals>(grid, lines, end_m - t);
+      return step_through<LineFamily::kDiagonals>(grid, intervals, lines, step_m, end_m - t);
     };
     const Steps steps = facets.exact_lines != nullptr ? in_grid(*facets.exact_lines) : in_grid(*facets.lines);
-    const double step_m = grid.step_m();
     const double at_m = t + static_cast<double>(steps.count) * step_m;
     if (steps.is_below) {
       if (steps.count == 0 && t == first_m) return first_m;

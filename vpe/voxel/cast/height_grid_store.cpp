@@ -26,6 +26,12 @@ HeightGridStore::HeightGridStore(std::shared_ptr<const paging::PlanetFile> plane
       grids_(budget_share(budget_bytes, 1.0 - kExactShare)),
       exact_(budget_share(budget_bytes, kExactShare)) {}
 
+void HeightGridStore::set_budget(std::size_t bytes) const {
+  budget_ = bytes;
+  grids_.set_limit(budget_share(bytes, 1.0 - kExactShare));
+  exact_.set_limit(budget_share(bytes, kExactShare));
+}
+
 void HeightGridStore::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
   paging::require_same_grid(*planet_, *planet);
   planet_ = std::move(planet);

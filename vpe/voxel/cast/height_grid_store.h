@@ -63,6 +63,8 @@ class HeightGridStore {
 
   std::size_t bytes_resident() const;
   std::size_t budget_bytes() const { return budget_; }
+  // Changes the budget and removes what exceeds it.
+  void set_budget(std::size_t bytes) const;
 
   // Counts all grids that were ever made, those that have left the store included.
   struct BuildTotals {
@@ -100,7 +102,7 @@ class HeightGridStore {
   paging::TileHeights heights(Tile tile, double exaggeration) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  std::size_t budget_;
+  mutable std::atomic<std::size_t> budget_;
   mutable std::atomic<std::int64_t> tiles_made_{0};
   mutable std::atomic<std::size_t> bytes_made_{0};
   mutable Cache<float> grids_;

@@ -11,12 +11,14 @@
 #include "vpe/voxel/cast/column_batch.h"
 #include "vpe/voxel/cast/column_walk.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
+#include "vpe/voxel/cast/tile_fallbacks.h"
 
 namespace vpe::voxel {
 
 namespace {
 
 constexpr double kSurfaceShare = 0.25;
+constexpr double kVolumeShare = 0.375;  // half of what height grids have before
 
 std::size_t bytes_of_share(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
@@ -99,7 +101,12 @@ bool casts_by_columns(const core::View& view) {
 
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : surface_(planet, bytes_of_share(budget_bytes, kSurfaceShare)),
-      store_(planet, bytes_of_share(budget_bytes, 1.0 - kSurfaceShare)) {}
+      store_(planet, bytes_of_share(budget_bytes, 1.0 - kSurfaceShare)),
+      volumes_(bytes_of_share(budget_bytes, kVolumeShare)) {}
+
+void RangeCaster::make_room_for_volumes() const {
+  std::call_once(has_volumes_, [&] { store_.set_budget(store_.budget_bytes() / 2); });
+}
 
 double RangeCaster::ground_radius_m(const glm::dvec3& up, double exaggeration,
                                     const TileFallbacks* fallbacks) const {
@@ -116,6 +123,7 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
                                     TileFallbacks* fallbacks) const {
   const double distance = glm::length(view.camera.position_m);
   const bool is_discrete = options.method == RangeOptions::Method::kDiscrete;
+  const bool is_volume = options.method == RangeOptions::Method::kVolume;
   if (is_discrete && !casts_by_columns(view))
     throw std::invalid_argument("the discrete caster draws perspective views and those of a level camera");
   const SingleRays single_rays(surface_, options.exaggeration, fallbacks);
@@ -128,13 +136,21 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
     if (distance > ground_m) {
       walk.emplace(surface_, ColumnCamera{up, distance, surface_.planet_radius_m(), ground_m},
                    options.exaggeration,
-                   CellRule{options.cell_px, core::focal_px(view),
+                   CellRule{is_volume ? 0 : options.cell_px, core::focal_px(view),
                             lod::is_neutral(options.control) ? nullptr : &options.control,
                             lod::centre_of_view(view), is_discrete, is_discrete && options.discrete.blends},
                    fallbacks);
       if (fallbacks != nullptr && fallbacks->purpose() == TileFallbacks::Purpose::kImage)
         fallbacks->require(walk->below_camera());
     }
+  }
+  if (walk && is_volume) {
+    make_room_for_volumes();
+    const VolumeTiles found =
+        cast_volumes(view, *walk, volumes_, options.volume, scratches, pool, options.only, range_m);
+    ColumnWalk::Usage usage = walk->usage();
+    add_deviations(found, core::focal_px(view), walk->tree(), usage);
+    return usage;
   }
   if (walk && options.method != RangeOptions::Method::kSingleRays) {
     const bool round = upright(view, walk->camera().up);
@@ -153,7 +169,7 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
       return walk->usage();
     }
   }
-  if (is_discrete) {
+  if (is_discrete || is_volume) {
     std::ranges::fill(range_m, 0.0F);  // the camera is below the ground
     return {};
   }
@@ -162,6 +178,19 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
   if (walk) usage = walk->usage();  // of rays that lacked a tile
   usage.steepest_slope = surface_.planet().tree().steepest_slope(options.exaggeration);
   return usage;
+}
+
+bool RangeCaster::is_in_volume(const glm::dvec3& place_m, const RangeOptions& options) const {
+  const double distance = glm::length(place_m);
+  if (!(distance > 0)) return true;
+  make_room_for_volumes();
+  const glm::dvec3 up = place_m / distance;
+  TileFallbacks fallbacks(store_, options.exaggeration, ReadingRule::always());
+  // Where the ground is decides nothing here.
+  const ColumnCamera camera{up, distance, surface_.planet_radius_m(), 0.5 * distance};
+  const ColumnWalk walk(surface_, camera, options.exaggeration, CellRule{}, &fallbacks);
+  ThreadLocalTiles tiles(store_, options.exaggeration, &fallbacks);
+  return VolumeRays(walk, volumes_, tiles, options.volume).is_ground(place_m);
 }
 
 double RangeCaster::range_error(const core::View& view, double exaggeration) const {

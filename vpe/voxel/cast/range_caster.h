@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
 
 #include "lod/control.h"
@@ -21,6 +22,7 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
+#include "vpe/voxel/cast/band_caster.h"
 #include "vpe/voxel/cast/discrete_caster.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/cast/sector_caster.h"
@@ -37,6 +39,7 @@ struct RangeOptions {
     kSingleRays,  // every ray by itself, down the maximum pyramids; ignores cell_px
     kReference,   // every ray by itself in fixed steps (fixed_step_marcher.h)
     kDiscrete,    // columns of voxels (discrete_caster.h), at most cell_px wide
+    kVolume,      // terrain volumes of the finest tiles (band_caster.h); ignores cell_px
   };
   // kColumns is by far the fastest. The others are checks, and the baseline of measurements
   // (docs/measurements/rays.md).
@@ -46,6 +49,7 @@ struct RangeOptions {
   // the others cost nothing and are not written, but for some beside it (SectorCaster); elsewhere all are cast.
   core::SubRectangle only = {};
   DiscreteForm discrete = {};  // with kDiscrete alone
+  VolumeForm volume = {};      // with kVolume alone
   bool operator==(const RangeOptions&) const = default;
 };
 
@@ -54,13 +58,16 @@ bool casts_by_columns(const core::View& view);
 
 class RangeCaster {
  public:
-  // A quarter of the budget goes to single rays (paging::Surface), the rest to height grids.
+  // A quarter of the budget goes to single rays (paging::Surface), the rest to height grids. From the first image of volumes on
+  // these have half of the rest.
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
   // Writes the ranges of the view's drawn part (with kDiscrete, discrete.rays rows for each row of pixels), row by row from the top: metres from the camera to the
   // reference surface as exaggerated, infinite for the sky, 0 for a camera below the surface. Columns serve
   // perspective views, and cylindrical and equirectangular ones whose camera is level; other views get a ray
   // for each pixel. kDiscrete throws std::invalid_argument for these (see casts_by_columns()).
+  //
+  // kVolume casts in any projection. Its usage includes how far volumes are from the reference surface.
   //
   // With cell_px 0 ranges are those of paging::Surface::cast() but for rounding: the relative error is below
   // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts.
@@ -94,6 +101,10 @@ class RangeCaster {
   // Returns the error for the planet's own ground.
   double range_error(const core::View& view, double exaggeration) const;
 
+  // Returns true if a point is in the ground that kVolume casts. Reads the tile there, or the nearest ancestor that can be
+  // read. Throws paging::PlanetError where not even a root can be.
+  bool is_in_volume(const glm::dvec3& place_m, const RangeOptions& options) const;
+
   // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). No other member may run
   // meanwhile.
   void change_planet(const std::shared_ptr<const paging::PlanetFile>& planet) {
@@ -104,10 +115,11 @@ class RangeCaster {
   const paging::Surface& surface() const { return surface_; }
   const HeightGridStore& store() const { return store_; }
   std::size_t bytes_resident() const {
-    return surface_.bytes_resident() + store_.bytes_resident() + sectors_.bytes();
+    return surface_.bytes_resident() + store_.bytes_resident() + volumes_.bytes_resident() + sectors_.bytes();
   }
 
  private:
+  void make_room_for_volumes() const;
   // Returns the radius of the ground below the camera, or of what lies no higher if nothing may be read.
   double ground_radius_m(const glm::dvec3& up, double exaggeration, const TileFallbacks* fallbacks) const;
   void cast_upright(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
@@ -117,6 +129,8 @@ class RangeCaster {
 
   paging::Surface surface_;
   HeightGridStore store_;
+  GridVolumeStore volumes_;
+  mutable std::once_flag has_volumes_;
   SectorCaster sectors_;
 };
 

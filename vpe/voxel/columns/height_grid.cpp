@@ -90,14 +90,6 @@ DepthPlane plane_of(std::size_t x0, std::size_t y0, int n, const std::vector<dou
   return {(3.0 * a + b + c - d) / 4.0, (b - a + d - c) / (2.0 * n), (c - a + d - b) / (2.0 * n)};
 }
 
-// Returns H of a post of a grid whose lines are of `family`.
-template <typename T>
-T post_at(const HeightGridLines<T>& lines, GridPost at, LineFamily family) {
-  if (family == LineFamily::kColumns) return lines.line(at.x)[at.y];
-  if (family == LineFamily::kRows) return lines.line(at.y)[at.x];
-  return lines.line(at.x - at.y)[at.x];
-}
-
 // Fills `store` with the posts that height(GridPost) returns and their maxima, and appends the grid to `grids`.
 template <typename T, typename Height>
 void add_grid(const DepthPlane& reference, const Shape& shape, T* store, int intervals, LineFamily family,
@@ -150,7 +142,7 @@ TileHeightGrids<T>::TileHeightGrids(const TileHeightGrids& other, LineFamily fam
   storage_.assign(other.lines_.size() * shape.total(), T(0));
   for (const HeightGridLines<T>& from : other.lines_) {
     add_grid(from.reference, shape, storage_.data() + lines_.size() * shape.total(), n, family, lines_,
-             [&](GridPost at) { return post_at(from, at, other.family_); });
+             [&](GridPost at) { return post_height(from, other.family_, at.x, at.y); });
   }
 }
 
@@ -187,7 +179,7 @@ TileHeightGrids<T>::TileHeightGrids(const TileHeightGrids<float>& coarser, const
       const auto depth_at = [&](int i, int j) {
         const GridPost at{across[x].cell - column * coarse_n + i, up[y].cell - row * coarse_n + j};
         return grid.reference.w0 + grid.reference.wx * at.x + grid.reference.wy * at.y -
-               static_cast<double>(post_at(grid, at, coarser.family())) * per_depth;
+               static_cast<double>(post_height(grid, coarser.family(), at.x, at.y)) * per_depth;
       };
       const double s = across[x].share;
       const double t = up[y].share;

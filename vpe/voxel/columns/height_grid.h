@@ -68,6 +68,14 @@ struct HeightGridLines {
 };
 inline constexpr int kReadAhead = 64;
 
+// Returns H of post (x, y) of a grid whose lines are of `family`.
+template <typename T>
+T post_height(const HeightGridLines<T>& lines, LineFamily family, int x, int y) {
+  if (family == LineFamily::kColumns) return lines.line(x)[y];
+  if (family == LineFamily::kRows) return lines.line(y)[x];
+  return lines.line(x - y)[x];
+}
+
 // Describes a tile whose posts are taken from a coarser tile that contains it.
 struct FallbackTile {
   lod::TileKey key;

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
+#include "vpe/voxel/volume/block_maxima.h"
 #include "vpe/voxel/volume/terrain_volume.h"
 
 namespace vpe::voxel {
@@ -42,20 +44,15 @@ class BoundaryCells {
 
   // Returns the first parameter t in [t0, t1] from which on a ray may be in a cell that is not air, or t1: all points before
   // it are certainly in air. Goes over square blocks of 2^n cells and skips those that the ray passes above.
-  double first_low(const glm::dvec3& origin, const glm::dvec3& direction, double t0, double t1) const;
+  double first_low(const glm::dvec3& origin, const glm::dvec3& direction, double t0, double t1) const {
+    return maxima_->first_low(origin, direction, t0, t1);
+  }
 
  private:
-  // Holds the highest boundary cell in and beside each block of 2^n x 2^n cells.
-  struct Level {
-    int columns = 0;
-    std::vector<std::uint8_t> high;
-  };
-  void make_levels();
-
   int columns_;
   int rows_;
   std::vector<Span> spans_;
-  std::vector<Level> levels_;  // levels_[0]: single cells
+  std::optional<BlockMaxima> maxima_;
 };
 
 }  // namespace vpe::voxel
