@@ -66,7 +66,7 @@ run_sanitized() {
 
 if [ "$what" = --fuzz ]; then
   seconds=${2:-600}
-  targets=(flight payload planet forged label rover gpano sidecar image place table axes scene relief sticks mesh)
+  targets=(flight payload planet forged label rover gpano sidecar image place table axes scene relief sticks mesh volume)
   cmake --preset fuzz >/dev/null
   cmake --build build/fuzz --target vpe_fuzz_seeds "${targets[@]/#/vpe_fuzz_}" -- -j"$jobs"
   for target in "${targets[@]}"; do

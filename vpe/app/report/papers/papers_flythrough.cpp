@@ -6,14 +6,11 @@
 #include <cstdlib>
 #include <set>
 #include <string>
-#include <system_error>
 
-#include "lod/tree/tile_key.h"
 #include "mars/geodesy/pose.h"
 #include "mars/geodesy/sun.h"
-#include "paging/surface/surface.h"
-#include "vpe/app/planet/fractal_terrain.h"
 #include "vpe/app/report/papers/paper_images.h"
+#include "vpe/app/report/papers/patch_scene.h"
 #include "vpe/base/number.h"
 #include "vpe/core/frame.h"
 #include "vpe/report/interleaved_timing.h"
@@ -32,33 +29,7 @@ std::vector<double> voxel_ratios(const FlythroughPaperPlan& plan) {
   return {0.5, 1, 2, 4, 8};
 }
 
-// Holds the terrain and the camera over its middle. Removes the planet file at the end.
-struct FlythroughScene {
-  std::filesystem::path file;
-  PatchBuild build;
-  mars::Pose pose;
-
-  ~FlythroughScene() {
-    build.planet.reset();
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-  }
-};
-
-void build_scene(const FlythroughPaperPlan& plan, const std::filesystem::path& folder, FlythroughScene& scene) {
-  constexpr int kFinestLevel = 13;
-  const PatchSpec spec{lod::tile_at({mars::Face::kPlusX, 0.17, -0.19}, kFinestLevel - (plan.is_short ? 2 : 4)),
-                       plan.is_short ? 2 : 4};
-  scene.file = folder / "flythrough-terrain.vpe";
-  scene.build = build_patch(spec, scene.file, plan.threads.back(), [](double) {});
-  const glm::dvec3 middle = lod::bounding_cap(spec.patch).centre;
-  const mars::LonLat place = mars::lon_lat(middle);
-  const double side_m = spec.spacing_m() * (spec.side_posts() - 1);
-  const double ground_m = paging::Surface(scene.build.planet, std::size_t{1} << 26).at(middle).height_m;
-  scene.pose = {place.lon_deg, place.lat_deg, ground_m + side_m / 10, 30, 0, 0};
-}
-
-core::DrawRequest flythrough_request(const FlythroughPaperPlan& plan, const FlythroughScene& scene,
+core::DrawRequest flythrough_request(const FlythroughPaperPlan& plan, const PatchScene& scene,
                                      double pitch_deg) {
   core::DrawRequest request;
   mars::Pose pose = scene.pose;
@@ -100,7 +71,7 @@ struct FlythroughCases {
   std::vector<std::size_t> by_way;
 };
 
-FlythroughCases make_flythrough_cases(const FlythroughPaperPlan& plan, const FlythroughScene& scene,
+FlythroughCases make_flythrough_cases(const FlythroughPaperPlan& plan, const PatchScene& scene,
                                       const std::function<void()>& step) {
   FlythroughCases cases;
   const std::size_t share = plan.memory_bytes / plan.threads.size();
@@ -261,8 +232,9 @@ int count_steps(const FlythroughPaperPlan& plan) {
 
 FlythroughPaper measure_flythrough_paper(const FlythroughPaperPlan& plan, const std::filesystem::path& folder,
                                          const std::function<void()>& step) {
-  FlythroughScene scene;
-  build_scene(plan, folder, scene);
+  PatchScene scene;
+  build_patch_scene(folder / "flythrough-terrain.vpe",
+                    {.levels = plan.is_short ? 2 : 4, .threads = plan.threads.back()}, scene);
   const FlythroughCases cases = make_flythrough_cases(plan, scene, step);
   const std::vector<report::Timing> timings = report::time_interleaved(cases.all, plan.rounds);
 

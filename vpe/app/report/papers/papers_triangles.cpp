@@ -4,16 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
-#include "lod/tree/tile_key.h"
 #include "mars/geodesy/pose.h"
 #include "mars/geodesy/sun.h"
-#include "paging/surface/surface.h"
-#include "vpe/app/planet/fractal_terrain.h"
 #include "vpe/app/report/papers/paper_images.h"
+#include "vpe/app/report/papers/patch_scene.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/interleaved_timing.h"
 #include "vpe/report/papers.h"
@@ -40,33 +37,7 @@ std::array<TerrainWay, 4> terrain_ways() {
            {"rays, exact (rays.mode=exact)", core::RayMode::kExact, 0}}};
 }
 
-// Holds the planet file, and removes it at the end.
-struct TrianglesScene {
-  std::filesystem::path file;
-  PatchBuild build;
-  mars::Pose pose;
-
-  ~TrianglesScene() {
-    build.planet.reset();
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-  }
-};
-
-void build_triangles_scene(const std::filesystem::path& folder, TrianglesScene& scene) {
-  constexpr int kFinestLevel = 13;
-  constexpr int kLevels = 2;  // 128 x 2^2 + 1 posts a side
-  const PatchSpec spec{lod::tile_at({mars::Face::kPlusX, 0.17, -0.19}, kFinestLevel - kLevels), kLevels};
-  scene.file = folder / "triangles-terrain.vpe";
-  scene.build = build_patch(spec, scene.file, 1, [](double) {});
-  const glm::dvec3 middle = lod::bounding_cap(spec.patch).centre;
-  const mars::LonLat place = mars::lon_lat(middle);
-  const double side_m = spec.spacing_m() * (spec.side_posts() - 1);
-  const double ground_m = paging::Surface(scene.build.planet, std::size_t{1} << 26).at(middle).height_m;
-  scene.pose = {place.lon_deg, place.lat_deg, ground_m + side_m / 6, 30, -30, 0};
-}
-
-core::DrawRequest triangles_request(const TrianglesScene& scene, const TerrainWay& way) {
+core::DrawRequest triangles_request(const PatchScene& scene, const TerrainWay& way) {
   core::DrawRequest request;
   request.view.camera = mars::to_camera(scene.pose, scene.build.planet->radius_m());
   request.view.width = 500;
@@ -123,8 +94,9 @@ int count_triangles_steps(const TrianglesPaperPlan& plan) {
 
 TrianglesPaper measure_triangles_paper(const TrianglesPaperPlan& plan, const std::filesystem::path& folder,
                                        const std::function<void()>& step) {
-  TrianglesScene scene;
-  build_triangles_scene(folder, scene);
+  PatchScene scene;
+  build_patch_scene(folder / "triangles-terrain.vpe", {.height_share = 1.0 / 6}, scene);
+  scene.pose.pitch_deg = -30;
   const std::array<TerrainWay, 4> ways = terrain_ways();
   std::shared_ptr<gl::Context> context;
   std::unique_ptr<core::Renderer> polygons;
