@@ -2,7 +2,7 @@
 // loaded, so that reports can name them.
 #include <dlfcn.h>
 
-#ifdef __SANITIZE_THREAD__
+#ifdef VPE_THREAD_SANITIZER
 #include <cstddef>
 #include <new>
 
