@@ -24,7 +24,7 @@ using LabelKeyword = std::pair<std::string, std::string>;
 // - NAME, TITLE, PRODUCT_NAME, PRODUCT_TYPE, DATA_SET_NAME, DESCRIPTION or NOTE says albedo, normalized or photometrically;
 // - the product has heights: NAME, TITLE, PRODUCT_NAME or PRODUCT_TYPE has a word such as DTM, topography or elevation, UNIT is
 //   a length, or there is DTM_MISSING_DN.
-// What a label says about the place, as RATIONALE_DESC does, does not count. Where words may mean either, the result is false.
+// Ignores what a label says about the place, as RATIONALE_DESC does. Where words may mean either, the result is false.
 bool says_own_light(std::span<const LabelKeyword> keywords);
 
 }  // namespace mars

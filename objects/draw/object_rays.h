@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -83,6 +84,14 @@ struct ObjectRay {
   glm::dvec3 origin_m;   // body-fixed
   glm::dvec3 direction;  // unit
 };
+
+// Returns true if a ray may meet what a ball holds, up to until_m along it. Pure.
+inline bool may_meet(const ObjectRay& ray, double until_m, const SceneBall& ball) {
+  const glm::dvec3 to = ball.centre_m - ray.origin_m;
+  const double along = glm::dot(to, ray.direction);
+  if (along < -ball.radius_m || along - ball.radius_m > until_m) return false;
+  return glm::length(to - along * ray.direction) <= ball.radius_m;
+}
 
 // Holds what a ray meets: semi-transparent places from near to far, then at most one opaque place behind them.
 struct RayResult {

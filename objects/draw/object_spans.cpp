@@ -46,14 +46,8 @@ std::vector<ObjectSpan> object_spans(const Scene& scene, const ObjectRay& ray, d
   rule.camera_m = ray.origin_m;
   const ObjectRays rays(scene, rule);
   std::vector<ObjectSpan> out;
-  scene.visit(
-      [&](const SceneBall& ball) {
-        const glm::dvec3 to = ball.centre_m - ray.origin_m;
-        const double along = glm::dot(to, ray.direction);
-        if (along < -ball.radius_m || along - ball.radius_m > until_m) return false;
-        return glm::length(to - along * ray.direction) <= ball.radius_m;
-      },
-      [&](std::uint32_t n) { append_spans(rays.placed(n), ray, until_m, out); });
+  scene.visit([&](const SceneBall& ball) { return may_meet(ray, until_m, ball); },
+              [&](std::uint32_t n) { append_spans(rays.placed(n), ray, until_m, out); });
   std::sort(out.begin(), out.end(), [](const ObjectSpan& a, const ObjectSpan& b) {
     return std::tie(a.begin_m, a.end_m, a.instance) < std::tie(b.begin_m, b.end_m, b.instance);
   });

@@ -57,14 +57,8 @@ std::optional<SeenObject> first_object(const Scene& scene, const ObjectRay& ray,
   rule.least_ray_px = 0;
   const ObjectRays rays(scene, rule);
   std::vector<PlacedObject> objects;
-  scene.visit(
-      [&](const SceneBall& ball) {
-        const glm::dvec3 to = ball.centre_m - ray.origin_m;
-        const double along = glm::dot(to, ray.direction);
-        if (along < -ball.radius_m || along - ball.radius_m > until_m) return false;
-        return glm::length(to - along * ray.direction) <= ball.radius_m;
-      },
-      [&](std::uint32_t n) { objects.push_back(rays.placed(n)); });
+  scene.visit([&](const SceneBall& ball) { return may_meet(ray, until_m, ball); },
+              [&](std::uint32_t n) { objects.push_back(rays.placed(n)); });
   std::sort(objects.begin(), objects.end(), [](const PlacedObject& a, const PlacedObject& b) {
     return a.near_m != b.near_m ? a.near_m < b.near_m : a.instance < b.instance;
   });

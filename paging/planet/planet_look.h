@@ -1,4 +1,4 @@
-// What the appearance of a planet takes from its file.
+// Fits an appearance to a planet: replaces what it leaves to the planet's file.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What lies at a place of a planet with the objects of a scene: the highest object, and all surfaces along the
+// Finds what lies at a place of a planet with the objects of a scene: the highest object, and all surfaces along the
 // vertical.
 //
 // Typical usage:
