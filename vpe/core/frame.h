@@ -22,6 +22,7 @@
 #include "vpe/base/rgb.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/certificate.h"
+#include "vpe/core/ground_parts.h"
 #include "vpe/core/interest.h"
 #include "vpe/core/object_track.h"
 #include "vpe/core/view.h"
@@ -102,6 +103,9 @@ struct DrawRequest {
   double time_s = 0;  // of the flight; decides where objects that move are
   // Says how the flight moves objects of the scene; null: it does not.
   std::shared_ptr<const std::vector<ObjectTrack>> tracks;
+  // Is added to the ground or cut out of it; null: nothing. Drawn in rays.mode=volume and boundary without coarsening
+  // (voxel::draws_ground_parts()); the certificate then includes the bound of its error. Other images do not show it.
+  std::shared_ptr<const GroundParts> ground_parts;
   // False: Frame::colour stays empty, and nothing is loaded for it; the certificate does not know the share of
   // nodata. For ranges at another accuracy than that of the image.
   bool want_colour = true;

@@ -131,6 +131,9 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
                           const core::WantedPixels& wanted, core::Frame& frame, Image& image);
   void take_usage(const SmoothUsage& usage, Image& image) const;
   const SmoothGround& smooth_ground() const;
+  // Returns how parts of the ground are lit, in normals_; empty if there is nothing of them in the image.
+  std::span<const PixelNormal> light_parts(const core::DrawRequest& request, std::span<const float> range_m,
+                                           std::span<const std::uint8_t> wanted, Image& image);
   // Returns the number of nodata pixels. Smooths edges where there is one sample a pixel.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, Image& image, std::span<const PixelNormal> normals = {});
@@ -311,7 +314,19 @@ void RayRenderer::draw_one(const core::DrawRequest& request, std::span<float> ra
   if (options.method == RangeOptions::Method::kDiscrete)
     return draw_discrete(request, options, range_m, colour, image);
   image.usage.add(cast_in_bands(request.view, options, range_m, image.fallbacks), planet_->tree());
-  if (!colour.empty()) image.nodata_pixels += paint(request, range_m, colour, image);
+  if (!colour.empty())
+    image.nodata_pixels += paint(request, range_m, colour, image, light_parts(request, range_m, {}, image));
+}
+
+std::span<const PixelNormal> RayRenderer::light_parts(const core::DrawRequest& request,
+                                                      std::span<const float> range_m,
+                                                      std::span<const std::uint8_t> wanted, Image& image) {
+  if (!request.ground_parts || !draws_ground_parts(request)) return {};
+  const RangeOptions options = range_options(request, planet_->radius_m());
+  const PartLight light{request.settings.shadows ? request.sun : glm::dvec3(0), wanted};
+  normals_.resize(range_m.size());
+  if (!caster_.light_parts(request.view, options, light, pool_, range_m, normals_, &image.fallbacks)) return {};
+  return normals_;
 }
 
 void RayRenderer::draw_discrete(const core::DrawRequest& request, const RangeOptions& options,
@@ -589,7 +604,9 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   } else {
     cast(request, frame.range_m, image);
     result.stats.select_ms = ms_since(start);
-    if (request.want_colour) image.nodata_pixels = paint(request, frame.range_m, frame.colour, image);
+    if (request.want_colour)
+      image.nodata_pixels =
+          paint(request, frame.range_m, frame.colour, image, light_parts(request, frame.range_m, {}, image));
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
   result.certificate = certify(request, frame, image);
@@ -641,9 +658,10 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
   const auto start = Clock::now();
   Image image(caster_.store(), for_planet, reading_rule(for_planet, reads_all));
   core::DrawResult result;
-  normals_.clear();
+  std::span<const PixelNormal> normals;
   if (const std::optional<SmoothForm> form = smooth_form(for_planet)) {
     draw_smooth_pixels(for_planet, *form, wanted, frame, image);
+    if (request.want_colour) normals = normals_;
   } else if (for_planet.settings.ray_mode == core::RayMode::kDiscrete) {
     // A voxel is found by the walk of its column alone.
     rays_m_.resize(pixels);
@@ -659,8 +677,10 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
     image.nodata_pixels = paint_discrete(for_planet, frame.range_m, wanted.is_wanted, painter_, pool_,
                                          image.reading, image.absent_colours, frame.colour);
   } else if (request.want_colour) {
+    if (draws_ground_parts(for_planet))
+      normals = light_parts(for_planet, frame.range_m, wanted.is_wanted, image);
     image.nodata_pixels = painter_.paint(for_planet, frame.range_m, frame.colour, wanted.is_wanted, pool_,
-                                         &image.reading, normals_);
+                                         &image.reading, normals);
     image.absent_colours = image.reading.absent;
   }
   result.certificate = certify(for_planet, frame, image);

@@ -7,7 +7,7 @@
 //     ColumnBatch     hands neighbouring columns to threads (cast/column_batch.h),
 //     ColumnWalk      leads a group of columns over the tiles from near to far (cast/column_walk.h),
 //     walk_grid()     resolves rows at the edges of one tile's posts (columns/columns.h),
-//     refine_row()    moves the ranges from the columns to the pixels' own rays (cast/refine.h);
+//     refine_row()    moves the ranges from the columns to the pixels' own rays (columns/refine.h);
 //   cast_smooth()   takes its place for smooth ground (smooth/smooth_caster.h),
 //   ImagePainter    colours ground, haze and sky of these ranges (paint/image_painter.h);
 //   RayRenderer     (this file) averages samples, smooths edges, applies gamma and states the certificate.

@@ -5,7 +5,7 @@
 
 #include "lod/options.h"
 #include "vpe/core/appearance/inspect.h"
-#include "vpe/voxel/paint/pixel_normal.h"
+#include "vpe/voxel/cast/pixel_normal.h"
 
 namespace vpe::voxel {
 
@@ -30,6 +30,10 @@ bool is_volume_mode(core::RayMode mode) {
   return mode == core::RayMode::kVolume || mode == core::RayMode::kBoundary;
 }
 
+bool draws_ground_parts(const core::DrawRequest& request) {
+  return is_volume_mode(request.settings.ray_mode) && request.coarsening <= 1;
+}
+
 RangeOptions for_hints(RangeOptions options, double downsampling) {
   // Volumes are made of the same tiles.
   if (options.method == RangeOptions::Method::kVolume) options.method = RangeOptions::Method::kColumns;
@@ -49,9 +53,10 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
                         request.settings.ray_blend};
     return options;
   }
-  if (is_volume_mode(request.settings.ray_mode) && request.coarsening <= 1) {
+  if (draws_ground_parts(request)) {
     options.method = RangeOptions::Method::kVolume;
     options.volume = volume_form(request.settings);
+    options.volume.parts = request.ground_parts;
     return options;
   }
   // Coarsening, the price of speed, acts on the cells.
@@ -76,7 +81,8 @@ std::size_t ray_image_bytes(const core::DrawRequest& request) {
   constexpr std::size_t kBytesPerPixel = 16;
   constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
   constexpr std::size_t kBytesOfFovea = 8;  // the outer image has a quarter of the pixels
-  const bool has_normals = request.settings.ray_mode == core::RayMode::kPerturbation;
+  const bool has_parts = request.ground_parts && draws_ground_parts(request);
+  const bool has_normals = has_parts || request.settings.ray_mode == core::RayMode::kPerturbation;
   const bool is_discrete = request.settings.ray_mode == core::RayMode::kDiscrete;
   const std::size_t bytes_of_rays =
       is_discrete ? (static_cast<std::size_t>(request.settings.ray_vertical) + 1) * kBytesPerSum : 0;

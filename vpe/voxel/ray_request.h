@@ -37,6 +37,9 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
 // Returns true for rays.mode=volume and boundary, which cast terrain volumes.
 bool is_volume_mode(core::RayMode mode);
 
+// Returns true if the request is drawn with the parts of its ground.
+bool draws_ground_parts(const core::DrawRequest& request);
+
 // Returns options that find the same tiles with few rays: those of an image with so many times fewer rows and columns. Expects
 // another method than kReference.
 RangeOptions for_hints(RangeOptions options, double downsampling);

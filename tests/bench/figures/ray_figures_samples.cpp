@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "vpe/voxel/cast/facet_finder.h"
-#include "vpe/voxel/cast/refine.h"
 #include "vpe/voxel/cast/sector_batch.h"
+#include "vpe/voxel/columns/refine.h"
 
 namespace bench {
 

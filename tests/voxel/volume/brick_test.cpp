@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
@@ -287,6 +288,56 @@ TEST_F(Scene, BadBricksAreRefused) {
                           }),
                std::invalid_argument);
   EXPECT_NO_THROW(make_brick(face_, frame, radius_m(), flat));
+  // A roof 20 000 voxels above the ground would need them all in between.
+  frame.intervals = 100;
+  const SolidsAt high = [](const glm::dvec3&, std::vector<SolidSpan>& out) {
+    out = {{-100, 0}, {20000 * kVoxel_m, 20001 * kVoxel_m}};
+  };
+  EXPECT_THROW(make_brick(face_, frame, radius_m(), high, {.samples = 1}), std::runtime_error);
+}
+
+TEST_F(Scene, EvenGroundTakesAVerticalAVoxelAndWallsTakeMore) {
+  std::atomic<int> verticals{0};
+  const auto count = [&](const Box& box) {
+    verticals = 0;
+    const SolidsAt solids = [&](const glm::dvec3& up, std::vector<SolidSpan>& out) {
+      ++verticals;
+      const glm::dvec3 at = local(radius_m() * up);
+      out = {{-100, 0.3 * at.x}};
+      if (at.x > box.low.x && at.x < box.high.x && at.y > box.low.y && at.y < box.high.y)
+        out.push_back({box.low.z, box.high.z});
+    };
+    (void)make_brick(face_, frame_, radius_m(), solids);
+    return verticals / static_cast<double>((kIntervals + 1) * (kIntervals + 1));
+  };
+  EXPECT_LT(count({}), 1.3);
+  const double with_walls = count({{-100, -100, 200}, {100, 100, 300}});
+  EXPECT_GT(with_walls, 1.5);
+  EXPECT_LT(with_walls, 2.5);
+}
+
+TEST_F(Scene, BricksDoNotDependOnThreadsAndCountFromTheirGround) {
+  const SolidsAt rough = [&](const glm::dvec3& up, std::vector<SolidSpan>& out) {
+    const glm::dvec3 at = local(radius_m() * up);
+    // Higher above the sphere than there are levels.
+    const double ground_m = 40000 * kVoxel_m + 30 * std::sin(0.05 * at.x) * std::cos(0.07 * at.y);
+    out = {{ground_m + 100, ground_m + 100 + at.x * at.x / 1000}, {0, ground_m}};
+  };
+  base::ThreadPool pool(3);
+  const GridVolume alone = make_brick(face_, frame_, radius_m(), rough);
+  const GridVolume together = make_brick(face_, frame_, radius_m(), rough, {}, &pool);
+  ASSERT_EQ(together.voxels.bytes(), alone.voxels.bytes());
+  for (int j = 0; j <= kIntervals; j += 5)
+    for (int i = 0; i <= kIntervals; i += 3)
+      for (int k = -20; k < 60; ++k) EXPECT_EQ(together.voxels.voxel(i, j, k), alone.voxels.voxel(i, j, k));
+  // The middle's ground is level 0, and places and heights are each other's inverse.
+  const glm::dvec3 middle{0.5 * kIntervals, 0.5 * kIntervals, 0};
+  EXPECT_NEAR(alone.height_m(middle, radius_m()), 40000 * kVoxel_m, kVoxel_m);
+  EXPECT_NEAR(alone.voxels.crossings(kIntervals / 2, kIntervals / 2).low, 0, 1);
+  const glm::dvec3 place =
+      (radius_m() + alone.height_m({7.25, 60.5, 12}, radius_m())) *
+      mars::chart_direction(face_, frame_.u0 + 7.25 * frame_.du, frame_.v0 + 60.5 * frame_.dv);
+  EXPECT_LT(glm::length(alone.voxel_of(place, radius_m()) - glm::dvec3(7.25, 60.5, 12)), 1e-4);
 }
 
 }  // namespace

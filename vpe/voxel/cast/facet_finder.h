@@ -6,7 +6,7 @@
 
 #include "vpe/voxel/cast/column_walk.h"
 #include "vpe/voxel/cast/height_grid_store.h"
-#include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/columns/refine.h"
 
 namespace vpe::voxel {
 

@@ -102,7 +102,7 @@ bool casts_by_columns(const core::View& view) {
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : surface_(planet, bytes_of_share(budget_bytes, kSurfaceShare)),
       store_(planet, bytes_of_share(budget_bytes, 1.0 - kSurfaceShare)),
-      volumes_(bytes_of_share(budget_bytes, kVolumeShare)) {}
+      volumes_(surface_, store_, bytes_of_share(budget_bytes, kVolumeShare)) {}
 
 void RangeCaster::make_room_for_volumes() const {
   std::call_once(has_volumes_, [&] { store_.set_budget(store_.budget_bytes() / 2); });
@@ -123,7 +123,10 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
                                     TileFallbacks* fallbacks) const {
   const double distance = glm::length(view.camera.position_m);
   const bool is_discrete = options.method == RangeOptions::Method::kDiscrete;
-  const bool is_volume = options.method == RangeOptions::Method::kVolume;
+  if (options.method == RangeOptions::Method::kVolume) {
+    make_room_for_volumes();
+    return volumes_.cast(view, {options.exaggeration, options.volume}, options.only, pool, range_m, fallbacks);
+  }
   if (is_discrete && !casts_by_columns(view))
     throw std::invalid_argument("the discrete caster draws perspective views and those of a level camera");
   const SingleRays single_rays(surface_, options.exaggeration, fallbacks);
@@ -136,21 +139,13 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
     if (distance > ground_m) {
       walk.emplace(surface_, ColumnCamera{up, distance, surface_.planet_radius_m(), ground_m},
                    options.exaggeration,
-                   CellRule{is_volume ? 0 : options.cell_px, core::focal_px(view),
+                   CellRule{options.cell_px, core::focal_px(view),
                             lod::is_neutral(options.control) ? nullptr : &options.control,
                             lod::centre_of_view(view), is_discrete, is_discrete && options.discrete.blends},
                    fallbacks);
       if (fallbacks != nullptr && fallbacks->purpose() == TileFallbacks::Purpose::kImage)
         fallbacks->require(walk->below_camera());
     }
-  }
-  if (walk && is_volume) {
-    make_room_for_volumes();
-    const VolumeTiles found =
-        cast_volumes(view, *walk, volumes_, options.volume, scratches, pool, options.only, range_m);
-    ColumnWalk::Usage usage = walk->usage();
-    add_deviations(found, core::focal_px(view), walk->tree(), usage);
-    return usage;
   }
   if (walk && options.method != RangeOptions::Method::kSingleRays) {
     const bool round = upright(view, walk->camera().up);
@@ -169,7 +164,7 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
       return walk->usage();
     }
   }
-  if (is_discrete || is_volume) {
+  if (is_discrete) {
     std::ranges::fill(range_m, 0.0F);  // the camera is below the ground
     return {};
   }
@@ -181,16 +176,14 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
 }
 
 bool RangeCaster::is_in_volume(const glm::dvec3& place_m, const RangeOptions& options) const {
-  const double distance = glm::length(place_m);
-  if (!(distance > 0)) return true;
   make_room_for_volumes();
-  const glm::dvec3 up = place_m / distance;
-  TileFallbacks fallbacks(store_, options.exaggeration, ReadingRule::always());
-  // Where the ground is decides nothing here.
-  const ColumnCamera camera{up, distance, surface_.planet_radius_m(), 0.5 * distance};
-  const ColumnWalk walk(surface_, camera, options.exaggeration, CellRule{}, &fallbacks);
-  ThreadLocalTiles tiles(store_, options.exaggeration, &fallbacks);
-  return VolumeRays(walk, volumes_, tiles, options.volume).is_ground(place_m);
+  return volumes_.is_ground(place_m, {options.exaggeration, options.volume});
+}
+
+bool RangeCaster::light_parts(const core::View& view, const RangeOptions& options, const PartLight& light,
+                              base::ThreadPool& pool, std::span<const float> range_m,
+                              std::span<PixelNormal> out, TileFallbacks* fallbacks) const {
+  return volumes_.light(view, {options.exaggeration, options.volume}, light, pool, range_m, out, fallbacks);
 }
 
 double RangeCaster::range_error(const core::View& view, double exaggeration) const {

@@ -15,6 +15,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "lod/control.h"
@@ -22,10 +23,10 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
-#include "vpe/voxel/cast/band_caster.h"
 #include "vpe/voxel/cast/discrete_caster.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/cast/sector_caster.h"
+#include "vpe/voxel/cast/volume_terrain.h"
 
 namespace vpe::voxel {
 
@@ -39,7 +40,7 @@ struct RangeOptions {
     kSingleRays,  // every ray by itself, down the maximum pyramids; ignores cell_px
     kReference,   // every ray by itself in fixed steps (fixed_step_marcher.h)
     kDiscrete,    // columns of voxels (discrete_caster.h), at most cell_px wide
-    kVolume,      // terrain volumes of the finest tiles (band_caster.h); ignores cell_px
+    kVolume,      // terrain volumes of the finest tiles (volume_terrain.h); ignores cell_px
   };
   // kColumns is by far the fastest. The others are checks, and the baseline of measurements
   // (docs/measurements/rays.md).
@@ -105,11 +106,17 @@ class RangeCaster {
   // read. Throws paging::PlanetError where not even a root can be.
   bool is_in_volume(const glm::dvec3& place_m, const RangeOptions& options) const;
 
+  // Writes how parts of the ground are lit in an image of these options, which must be of kVolume (VolumeTerrain::light()).
+  bool light_parts(const core::View& view, const RangeOptions& options, const PartLight& light,
+                   base::ThreadPool& pool, std::span<const float> range_m, std::span<PixelNormal> out,
+                   TileFallbacks* fallbacks) const;
+
   // Goes over to another version of the planet, as paging::PlanetUser::change_planet(). No other member may run
   // meanwhile.
   void change_planet(const std::shared_ptr<const paging::PlanetFile>& planet) {
     surface_.change_planet(planet);
     store_.change_planet(planet);
+    volumes_.forget();
   }
 
   const paging::Surface& surface() const { return surface_; }
@@ -129,7 +136,7 @@ class RangeCaster {
 
   paging::Surface surface_;
   HeightGridStore store_;
-  GridVolumeStore volumes_;
+  VolumeTerrain volumes_;
   mutable std::once_flag has_volumes_;
   SectorCaster sectors_;
 };

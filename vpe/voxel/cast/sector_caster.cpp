@@ -8,7 +8,7 @@
 
 #include "vpe/voxel/cast/facet_finder.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
-#include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/columns/refine.h"
 
 namespace vpe::voxel {
 

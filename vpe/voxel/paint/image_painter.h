@@ -23,8 +23,8 @@
 #include "paging/shading/terrain_shader.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
+#include "vpe/voxel/cast/pixel_normal.h"
 #include "vpe/voxel/paint/paint_sources.h"
-#include "vpe/voxel/paint/pixel_normal.h"
 #include "vpe/voxel/paint/scale_table.h"
 
 namespace vpe::voxel {
@@ -67,8 +67,8 @@ class ImagePainter {
   // Posts and texels are nominally at most post_px pixels wide. Smaller: sharper where the ground is seen at a grazing angle;
   // larger: blurred.
   //
-  // With `normals`, an entry for each pixel or empty, light, slope and aspect follow from these where they have a share. Flat
-  // shading does not use them.
+  // With `normals`, an entry for each pixel or empty, light, slope, aspect and shadows follow from these where they have a share.
+  // Flat shading does not use them.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, std::span<const std::uint8_t> wanted, base::ThreadPool& pool,
                      Reading* reading = nullptr, std::span<const PixelNormal> normals = {}, double post_px = 1);

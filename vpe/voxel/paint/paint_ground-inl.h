@@ -216,8 +216,9 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
   }
 }
 
-// Sets the normals in `post` of pixels that have one of their own.
+// Sets the normals in `post`, and the shares of the sun, of pixels that have their own.
 inline HWY_NOINLINE void take_normals(const PaintJob& job, Block& block) {
+  const bool has_sun = job.shading->lit && job.shading->shadows;
   const PixelNormal* const normals = job.normals + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x;
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
@@ -226,6 +227,7 @@ inline HWY_NOINLINE void take_normals(const PaintJob& job, Block& block) {
     post[0] += own.share * (own.x - post[0]);
     post[1] += own.share * (own.y - post[1]);
     post[2] += own.share * (own.z - post[2]);
+    if (has_sun && own.sun_share > 0) block.sun[i] += own.sun_share * (own.sun - block.sun[i]);
   }
 }
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "vpe/core/frame.h"
+#include "vpe/voxel/cast/pixel_normal.h"
 #include "vpe/voxel/paint/paint_tiles.h"
-#include "vpe/voxel/paint/pixel_normal.h"
 #include "vpe/voxel/paint/ray_rows.h"
 #include "vpe/voxel/paint/scale_table.h"
 

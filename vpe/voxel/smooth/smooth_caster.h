@@ -15,8 +15,8 @@
 
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
+#include "vpe/voxel/cast/pixel_normal.h"
 #include "vpe/voxel/cast/tile_usage.h"
-#include "vpe/voxel/paint/pixel_normal.h"
 #include "vpe/voxel/smooth/smooth_ground.h"
 
 namespace vpe::voxel {

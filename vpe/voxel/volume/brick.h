@@ -9,37 +9,34 @@
 //   });
 #pragma once
 
-#include <functional>
-#include <glm/vec3.hpp>
-#include <vector>
-
+#include "vpe/base/parallel.h"
+#include "vpe/core/ground_parts.h"
 #include "vpe/voxel/volume/grid_volume.h"
 
 namespace vpe::voxel {
 
-// Holds a solid part of a vertical line, in metres above the sphere, `low_m` below `high_m`. Parts may overlap.
-struct SolidSpan {
-  double low_m = 0;
-  double high_m = 0;
-};
-
-// Writes what is solid along the vertical of a unit direction. The lowest part must go on below everything that is to be seen: a
-// brick is ground below all parts.
-using SolidsAt = std::function<void(const glm::dvec3& up, std::vector<SolidSpan>& solids)>;
+using core::SolidsAt;
+using core::SolidSpan;
 
 // Limits of BrickSpec.
 inline constexpr int kMostBrickSamples = 16;
+// Densities of a brick: all between the ground and the highest part of each column.
+inline constexpr std::size_t kMostBrickDensities = std::size_t{1} << 27;
 
 struct BrickSpec {
   int samples = 4;  // along a side of each voxel's square; more: exacter densities, slower
   std::uint8_t threshold = 127;
 };
 
-// Makes the brick of a part of a face. The density of a voxel is the share of its cube that is solid, taken along samples * samples
-// verticals. Away from edges the surface lies within a voxel of what is solid; parts thinner than a voxel may be missing. Both
+// Makes the brick of a part of a face. The lowest solid part of every vertical must go on below everything that is to be seen: a
+// brick is ground below all parts. Levels count from about the lowest part's top in the middle. The density of a voxel is the share of
+// its cube that is solid, taken along samples * samples verticals; where those in the middles of neighbouring voxels have as many
+// parts, which begin and end within a voxel, along verticals between them. Away from edges the surface lies within a voxel of what is solid; parts thinner than a voxel may be missing. Both
 // deviations are 0: a brick is what it is. Throws std::invalid_argument for a frame of no or too many intervals, options beyond
-// their limits, heights that are not finite, parts farther apart than kMostBandLevel voxels, and what `solids` throws.
+// their limits, heights that are not finite, parts farther apart than kMostBandLevel voxels, and what `solids` throws;
+// std::runtime_error for more than kMostBrickDensities.
+// With `pool` several threads call `solids`; the brick is the same.
 GridVolume make_brick(mars::Face face, const HeightGridFrame& frame, double radius_m, const SolidsAt& solids,
-                      const BrickSpec& spec = {});
+                      const BrickSpec& spec = {}, base::ThreadPool* pool = nullptr);
 
 }  // namespace vpe::voxel

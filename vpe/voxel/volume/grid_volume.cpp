@@ -52,6 +52,12 @@ glm::dvec3 GridVolume::voxel_of(const glm::dvec3& place_m, double radius_m) cons
   return {at.x / at.w, at.y / at.w, at.z / (at.w * level_m)};
 }
 
+double GridVolume::height_m(const glm::dvec3& voxel, double radius_m) const {
+  const double depth = reference.w0 + reference.wx * voxel.x + reference.wy * voxel.y -
+                       voxel.z * level_m / (radius_m * radius_m);
+  return chart_length(frame.u0 + voxel.x * frame.du, frame.v0 + voxel.y * frame.dv) / depth - radius_m;
+}
+
 double GridVolume::highest_m(double radius_m) const {
   return HeightBound(frame, reference, (voxels.maxima().highest() + 1) * level_m, radius_m).top_m();
 }

@@ -28,6 +28,8 @@ struct GridVolume {
 
   // Returns the voxel coordinates of a point over the grid, in metres about the planet's centre.
   glm::dvec3 voxel_of(const glm::dvec3& place_m, double radius_m) const;
+  // Returns the height above the planet's sphere of a point in voxel coordinates.
+  double height_m(const glm::dvec3& voxel, double radius_m) const;
   // Returns a radius that no boundary cell reaches.
   double highest_m(double radius_m) const;
   std::size_t bytes() const { return sizeof(GridVolume) + voxels.bytes(); }

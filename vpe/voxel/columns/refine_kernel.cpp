@@ -4,18 +4,18 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
-#include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/columns/refine.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "vpe/voxel/cast/refine_kernel.cpp"
+#define HWY_TARGET_INCLUDE "vpe/voxel/columns/refine_kernel.cpp"
 // clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 // clang-format on
 
-#include "vpe/voxel/cast/refine_facets-inl.h"
-#include "vpe/voxel/cast/refine_hints-inl.h"
+#include "vpe/voxel/columns/refine_facets-inl.h"
+#include "vpe/voxel/columns/refine_hints-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {

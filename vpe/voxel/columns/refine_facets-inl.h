@@ -16,7 +16,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/columns/refine.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vpe/voxel/cast/refine.h"
+#include "vpe/voxel/columns/refine.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
