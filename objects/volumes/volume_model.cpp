@@ -91,6 +91,8 @@ VolumeModel::VolumeModel(VolumeLevel finest, Rgba colour) : colour_(colour) {
     high_m_ = glm::max(high_m_, place_m);
   });
   if (!(low_m_.x <= high_m_.x)) throw std::invalid_argument("a volume cannot be drawn: it is empty");
+  const std::vector<std::uint8_t>& posts = levels_[0].posts;
+  largest_per_m_ = *std::max_element(posts.begin(), posts.end()) * static_cast<double>(levels_[0].unit_per_m);
   ball_.centre_m = 0.5F * (low_m_ + high_m_);
   const auto radius_of = [&](const VolumeLevel& level) {
     float farthest_m = 0;

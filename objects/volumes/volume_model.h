@@ -36,6 +36,8 @@ class VolumeModel {
   const glm::vec3& low_m() const { return low_m_; }
   const glm::vec3& high_m() const { return high_m_; }
   const VolumeLook& look() const { return look_; }
+  // The largest extinction of a post of the finest level, above 0.
+  double largest_per_m() const { return largest_per_m_; }
   // Returns how far a level moves extinction, across a ray: 0 for the finest one, the spacing of its posts for others. This
   // bounds the root mean square, sqrt(2/3) of the spacing; it is no bound of each part's way, as a volume has no surface.
   double level_error_m(std::size_t level) const;
@@ -48,6 +50,7 @@ class VolumeModel {
   glm::vec3 low_m_{0, 0, 0};
   glm::vec3 high_m_{0, 0, 0};
   VolumeLook look_;
+  double largest_per_m_ = 0;
 };
 
 }  // namespace objects

@@ -76,11 +76,77 @@ TEST(ObjectSpans, ListsEachObjectOnTheWay) {
   EXPECT_TRUE(object_spans({}, {{0, 0, 0}, {0, 0, 1}}, kInfinite).empty());
 }
 
-TEST(ObjectSpans, VolumesHaveNone) {
-  Instance i;
-  i.position_m = {0, 0, kRadius_m};
-  const Scene scene({volume_model(slab_level(21, 21, 20, 0.5F, 4))}, {i});
-  EXPECT_TRUE(object_spans(scene, {{0, 0, 0}, {0, 0, 1}}, kInfinite).empty());
+// The field of the slab falls from 4 to 0 within half a metre of z = 0 and 9.5 m. From the planet's centre, images
+// would take a coarser level.
+TEST(ObjectSpans, VolumesHaveThoseOfAThreshold) {
+  std::vector<Instance> instances(2);
+  instances[0].position_m = {0, 0, kRadius_m};
+  instances[1].position_m = {0, 0, kRadius_m + 100};
+  instances[1].scale = 3;
+  instances[1].is_mirrored = true;
+  const Scene scene({volume_model(slab_level(21, 21, 20, 0.5F, 4))}, instances);
+  const ObjectRay up{{0, 0, 0}, {0, 0, 1}};
+  EXPECT_TRUE(object_spans(scene, up, kInfinite).empty());
+  EXPECT_TRUE(object_spans(scene, up, kInfinite, std::nullopt).empty());
+  EXPECT_TRUE(object_spans(scene, up, kInfinite, 4.1).empty());
+  for (const double threshold_per_m : {0.0, -1.0, 2.0, 3.0, 0.4}) {
+    const double share = threshold_per_m > 0 ? threshold_per_m / 4 : 0.5;
+    const auto spans = object_spans(scene, up, kInfinite, threshold_per_m);
+    ASSERT_EQ(spans.size(), 2U);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const double scale = n == 0 ? 1 : 3;
+      const double from_m = kRadius_m + (n == 0 ? 0 : 100);
+      EXPECT_NEAR(spans[n].begin_m - from_m, -0.5 * scale * (1 - share), 1e-6);
+      EXPECT_NEAR(spans[n].end_m - from_m, scale * (9.5 + 0.5 * (1 - share)), 1e-6);
+      EXPECT_GE(spans[n].geometric_error_m, 0.5 * scale);
+      EXPECT_LT(spans[n].geometric_error_m, 0.5 * scale + 1e-3);
+    }
+    EXPECT_EQ(object_spans(scene, up, kRadius_m + 50, threshold_per_m).size(), 1U);
+  }
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinite, -kInfinite}) {
+    EXPECT_THROW((void)object_spans(scene, up, kInfinite, bad), std::invalid_argument);
+    EXPECT_THROW((void)object_spans({}, up, kInfinite, bad), std::invalid_argument);
+  }
+}
+
+// Ends of volumes at any attitude lie where their field is at the threshold, and other models have the stretches that they have
+// without one.
+TEST(ObjectSpans, VolumesAtAnyAttitudeAreMetWhereTheyReachTheThreshold) {
+  test_support::Random random(33);
+  const auto volume = volume_model(ball_level(7, 0.5F, 30));
+  const auto box = mesh_model(make_box({9, 9, 9}));
+  const VolumeLevel& level = volume->volume()->levels()[0];
+  double worst = 0;
+  std::size_t met = 0;
+  for (int n = 0; n < 200; ++n) {
+    const Instance i = random_instance(random, kRadius_m);
+    Instance of_box = i;
+    of_box.model = 1;
+    const Scene scene({volume, box}, {i, of_box});
+    const glm::dvec3 up =
+        glm::normalize(scene.ball().centre_m + 0.7 * scene.ball().radius_m * random.direction());
+    const auto solid = object_spans(scene, {{0, 0, 0}, up}, kInfinite);
+    std::size_t others = 0;
+    for (const ObjectSpan& s : object_spans(scene, {{0, 0, 0}, up}, kInfinite, 0)) {
+      if (scene.instance(s.instance).model == 1) {
+        ASSERT_LT(others, solid.size());
+        EXPECT_EQ(s.begin_m, solid[others].begin_m);
+        EXPECT_EQ(s.end_m, solid[others++].end_m);
+        continue;
+      }
+      ++met;
+      EXPECT_LT(s.begin_m, s.end_m);
+      for (const double at_m : {s.begin_m, s.end_m}) {
+        const double from_m = glm::length(i.position_m);
+        const glm::dvec3 place_m =
+            glm::inverse(turned(i)) * ((at_m - from_m) * up + (from_m * up - i.position_m));
+        worst = std::max(worst, std::abs(extinction_per_m(level, place_m) - 0.25));
+      }
+    }
+    EXPECT_EQ(others, solid.size());
+  }
+  EXPECT_GT(met, 80U);
+  EXPECT_LT(worst, 1e-6);
 }
 
 // Rays from the planet's centre through meshes at any attitude.
