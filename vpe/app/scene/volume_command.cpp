@@ -1,9 +1,12 @@
 #include "vpe/app/scene/volume_command.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include "mars/raster/raster_levels.h"
+#include "mars/sources/source.h"
 #include "objects/files/volume_model_file.h"
 #include "objects/volumes/volume_file.h"
 #include "vpe/app/cli/examples.h"
@@ -16,6 +19,25 @@
 namespace vpe::app {
 
 namespace {
+
+// Returns the volume of a raster with a band for each level, on the ground and about its origin.
+objects::VolumeModel volume_of_levels(const VolumeArguments& arguments) {
+  using Limits = objects::VolumeLimits;
+  mars::RasterLevels cube =
+      mars::read_raster_levels(arguments.model, {.side = Limits::kMostSide, .values = Limits::kMostPosts});
+  const auto spacing_m = static_cast<float>(arguments.levels_m);
+  objects::DenseVolume dense({{cube.width, cube.height, cube.levels},
+                              spacing_m,
+                              {-0.5F * spacing_m * static_cast<float>(cube.width - 1),
+                               -0.5F * spacing_m * static_cast<float>(cube.height - 1), 0}});
+  dense.values() = std::move(cube.values);
+  const bool has_any = std::ranges::any_of(dense.values(), [](float v) { return v > 0; });
+  if (!has_any)
+    throw mars::SourceError(arguments.model +
+                            ": no value is above 0; give a raster of extinctions, 1/m, and "
+                            "--density for their unit");
+  return {objects::build_level(dense), {200, 200, 200, 255}};
+}
 
 // Returns the volume with another colour and more or less extinction.
 objects::VolumeModel changed(const objects::VolumeModel& volume, const VolumeArguments& arguments) {
@@ -61,7 +83,9 @@ void run_volume(const VolumeArguments& arguments, const Common& common) {
   if (!arguments.colour.empty() && !parse_rgb(arguments.colour))
     throw UsageError("--colour '" + arguments.colour + "': expected a colour such as d0c8c0");
   const objects::VolumeModel volume =
-      changed(objects::read_volume_model(arguments.model, arguments.options), arguments);
+      changed(arguments.levels_m > 0 ? volume_of_levels(arguments)
+                                     : objects::read_volume_model(arguments.model, arguments.options),
+              arguments);
   if (arguments.output.empty()) return print_volume(volume, common);
   objects::write_volume_file(arguments.output, volume);
   if (common.json || !common.quiet) print_volume(volume, common);
