@@ -152,7 +152,7 @@ void write_mesh_stream(const MeshStream& stream,
   if (stream.error.empty()) write_mesh(stream.mesh, out);
 }
 
-MeshStream read_mesh_stream(std::span<const std::uint8_t> bytes) {
+MeshStream read_mesh_stream(std::span<const std::uint8_t> bytes, bool allows_points) {
   Reader in(bytes);
   if (in.value<std::array<std::uint8_t, 8>>() != kMagic)
     throw std::runtime_error("what the reader of models sent is not a model's stream");
@@ -167,7 +167,9 @@ MeshStream read_mesh_stream(std::span<const std::uint8_t> bytes) {
   if (stream.error.empty()) stream.mesh = read_mesh(in);
   if (!in.at_end()) throw std::runtime_error("the model's stream has bytes after its end");
   if (stream.error.empty()) {
-    if (const std::string reason = check(stream.mesh); !reason.empty()) throw std::runtime_error(reason);
+    const bool is_points = allows_points && stream.mesh.triangles.empty();
+    if (const std::string reason = is_points ? check_points(stream.mesh) : check(stream.mesh); !reason.empty())
+      throw std::runtime_error(reason);
   }
   return stream;
 }

@@ -36,7 +36,8 @@ void write_mesh_stream(const MeshStream& stream,
                        const std::function<void(std::span<const std::uint8_t>)>& sink);
 
 // Returns what the bytes hold. Compares every count with the bytes that are left before it allocates. A returned mesh
-// passes check(). Throws std::runtime_error for bytes that are damaged or have another version, with what is wrong.
-MeshStream read_mesh_stream(std::span<const std::uint8_t> bytes);
+// passes check(); with `allows_points` one without triangles passes check_points() instead. Throws std::runtime_error
+// for bytes that are damaged or have another version, with what is wrong.
+MeshStream read_mesh_stream(std::span<const std::uint8_t> bytes, bool allows_points = false);
 
 }  // namespace objects

@@ -76,9 +76,11 @@ std::vector<std::uint8_t> output_of_model_reader(const fs::path& path, const Mod
   const char* up = options.up == UpAxis::kAuto ? "auto" : options.up == UpAxis::kY ? "y" : "z";
   try {
     // An absolute path cannot be taken for an option.
-    output = run_child({program, fs::absolute(path).string(), number_text(options.unit_m), up,
-                        number_text(options.memory_gb), number_text(std::floor(options.time_s))},
-                       {}, static_cast<std::size_t>(options.memory_gb * 1e9));
+    std::vector<std::string> words{
+        program, fs::absolute(path).string(),    number_text(options.unit_m),
+        up,      number_text(options.memory_gb), number_text(std::floor(options.time_s))};
+    if (options.allows_points) words.emplace_back("points");
+    output = run_child(std::move(words), {}, static_cast<std::size_t>(options.memory_gb * 1e9));
   } catch (const std::system_error& error) {
     throw fail(error.what(), "check the permissions of the program and the limits of processes");
   }
@@ -113,7 +115,7 @@ ModelFile read_model_file(const fs::path& path, const ModelFileOptions& options)
   const std::vector<std::uint8_t> bytes = output_of_model_reader(path, options);
   MeshStream stream;
   try {
-    stream = read_mesh_stream(bytes);
+    stream = read_mesh_stream(bytes, options.allows_points);
   } catch (const std::runtime_error& error) {
     throw fail(error.what(), kDamagedAdvice);
   }

@@ -27,10 +27,12 @@ struct ModelFileOptions {
   double memory_gb = 2;
   // Limits the processor time of the reader, 1 to 1e6.
   double time_s = 120;
+  // Reads a PLY of points, too. Without it such a file is an error whose message says how to make sticks of it.
+  bool allows_points = false;
 };
 
 struct ModelFile {
-  Mesh mesh;                       // passes check()
+  Mesh mesh;  // passes check(); where points are allowed and it has no triangle, check_points()
   std::vector<std::string> notes;  // what was ignored or repaired, a line each
 };
 

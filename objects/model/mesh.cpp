@@ -23,6 +23,19 @@ bool is_drawable(const glm::vec3& p) {
   return ok(p.x) && ok(p.y) && ok(p.z);
 }
 
+// The arrays must fit.
+std::string check_vertices(const Mesh& mesh) {
+  for (std::size_t n = 0; n < mesh.positions_m.size(); ++n) {
+    if (!is_drawable(mesh.positions_m[n]))
+      return "the coordinates of vertex " + std::to_string(n) + " are not finite or over 1e9 m";
+    if (!mesh.normals.empty() && !is_drawable(mesh.normals[n]))
+      return "the normal of vertex " + std::to_string(n) + " is not finite";
+    if (!mesh.uvs.empty() && !(std::isfinite(mesh.uvs[n].x) && std::isfinite(mesh.uvs[n].y)))
+      return "the texture coordinates of vertex " + std::to_string(n) + " are not finite";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::size_t Mesh::bytes() const {
@@ -45,14 +58,7 @@ std::string check(const Mesh& mesh) {
   if (mesh.material_table.empty() || mesh.material_table.size() > MeshLimits::kMostMaterials)
     return "it has " + std::to_string(mesh.material_table.size()) + " materials; 1 to " +
            std::to_string(MeshLimits::kMostMaterials) + " are allowed";
-  for (std::size_t n = 0; n < vertices; ++n) {
-    if (!is_drawable(mesh.positions_m[n]))
-      return "the coordinates of vertex " + std::to_string(n) + " are not finite or over 1e9 m";
-    if (!mesh.normals.empty() && !is_drawable(mesh.normals[n]))
-      return "the normal of vertex " + std::to_string(n) + " is not finite";
-    if (!mesh.uvs.empty() && !(std::isfinite(mesh.uvs[n].x) && std::isfinite(mesh.uvs[n].y)))
-      return "the texture coordinates of vertex " + std::to_string(n) + " are not finite";
-  }
+  if (std::string reason = check_vertices(mesh); !reason.empty()) return reason;
   for (std::size_t n = 0; n < triangles; ++n) {
     const glm::uvec3 t = mesh.triangles[n];
     if (std::max({t.x, t.y, t.z}) >= vertices)
@@ -78,6 +84,20 @@ std::string check(const Mesh& mesh) {
       return "a material names a texture beyond the last one";
   }
   return "";
+}
+
+std::string check_points(const Mesh& mesh) {
+  const std::size_t points = mesh.positions_m.size();
+  if (!mesh.triangles.empty() || !mesh.materials.empty() || !mesh.uvs.empty() || !mesh.material_table.empty() ||
+      !mesh.textures.empty())
+    return "it has more than points";
+  if (points == 0) return "it has no point";
+  if (points > MeshLimits::kMostVertices)
+    return "it has " + std::to_string(points) + " points; at most " +
+           std::to_string(MeshLimits::kMostVertices) + " are read";
+  if (!fits(mesh.normals.size(), points) || !fits(mesh.colours.size(), points))
+    return "its arrays have different sizes";
+  return check_vertices(mesh);
 }
 
 // Ritter's ball of two far points, then grown; the better of that and the ball of the box.

@@ -64,6 +64,10 @@ struct MeshLimits {
 // arrays, coordinates that are not finite or exceed the limits, no triangle. Pure.
 std::string check(const Mesh& mesh);
 
+// Returns "" if the mesh has points, i.e. vertices with or without normals and colours, and nothing else; else what is
+// wrong with it, as check() does. Normals may have any length, also 0: none. Pure.
+std::string check_points(const Mesh& mesh);
+
 // Encloses the vertices in a ball. The radius is at most 1.1 times that of the smallest one, and rounded up.
 struct Ball {
   glm::vec3 centre_m{0, 0, 0};

@@ -19,8 +19,10 @@
 
 #include "objects/reader/gltf_file.h"
 #include "objects/reader/material_table.h"
+#include "objects/reader/model_frame.h"
 #include "objects/reader/model_streams.h"
 #include "objects/reader/ply_check.h"
+#include "objects/reader/ply_points.h"
 #include "objects/reader/refusal.h"
 #include "objects/reader/scene_flattener.h"
 #include "vpe/base/quote.h"
@@ -45,14 +47,9 @@ ModelFormat format_of(const std::string& extension) {
                 "export the model in one of these formats");
 }
 
-// The frame of a model is x right, y forward, z up.
-glm::dmat4 to_model(ModelFormat format, const ModelFileOptions& options) {
-  const bool has_y_up =
-      options.up == UpAxis::kY ||
-      (options.up == UpAxis::kAuto && (format == ModelFormat::kGltf || format == ModelFormat::kObj));
-  const double s = options.unit_m;
-  if (!has_y_up) return glm::dmat4(s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1);
-  return glm::dmat4(-s, 0, 0, 0, 0, 0, s, 0, 0, s, 0, 0, 0, 0, 0, 1);
+bool has_y_up(ModelFormat format, UpAxis up) {
+  return up == UpAxis::kY ||
+         (up == UpAxis::kAuto && (format == ModelFormat::kGltf || format == ModelFormat::kObj));
 }
 
 // Keeps warnings that data were lost.
@@ -115,7 +112,10 @@ MeshStream read_with_assimp(const std::filesystem::path& path, const ModelFileOp
     uses = std::move(gltf.materials);
     result.notes = std::move(gltf.notes);
   }
-  if (format == ModelFormat::kPly) check_ply(folder.model());
+  if (format == ModelFormat::kPly) {
+    if (std::optional<MeshStream> points = read_ply_points(folder.model(), options)) return std::move(*points);
+    check_ply(folder.model());
+  }
 
   std::set<std::string> losses;
   Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
@@ -133,7 +133,8 @@ MeshStream read_with_assimp(const std::filesystem::path& path, const ModelFileOp
   if (scene == nullptr) throw Refusal("assimp says: " + shown(importer.GetErrorString()));
 
   MaterialTable materials(*scene, format, folder, uses, streams->opened());
-  result.mesh = flatten(*scene, to_model(format, options), format, materials, result.notes);
+  result.mesh = flatten(*scene, model_frame(has_y_up(format, options.up), options.unit_m), format, materials,
+                        result.notes);
   materials.note_ignored(result.notes);
   if (format == ModelFormat::kObj && streams->opened().empty()) {
     for (const std::string& name : streams->missing())

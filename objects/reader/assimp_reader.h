@@ -1,4 +1,4 @@
-// Reading of models by means of assimp, inside vpe-model-reader.
+// Reading of models by means of assimp, inside vpe-model-reader. Points alone are read without it (ply_points.h).
 //
 // Typical usage:
 //   const MeshStream model = read_with_assimp("rover.glb", {.unit_m = 1});
@@ -11,7 +11,8 @@
 
 namespace objects {
 
-// Returns a model's mesh and notes; the mesh passes check(). Throws Refusal. Whoever calls it must be ready for faults
+// Returns a model's mesh and notes; the mesh passes check(), or check_points() where points are allowed and it has no
+// triangle. Throws Refusal. Whoever calls it must be ready for faults
 // of assimp, which end the process.
 MeshStream read_with_assimp(const std::filesystem::path& path, const ModelFileOptions& options);
 

@@ -1,6 +1,7 @@
-// vpe-model-reader FILE UNIT_M UP [MEMORY_GB TIME_S]: writes the stream of a model (objects/files/mesh_stream.h) to standard
-// output. Ends with status 1 where the stream has an error in place of a mesh, and 2 for a wrong use. For an OpenVDB file it
-// becomes vpe-vdb-reader, with its limits (objects/reader/vdb).
+// vpe-model-reader FILE UNIT_M UP [MEMORY_GB TIME_S [points]]: writes the stream of a model
+// (objects/files/mesh_stream.h) to standard output. With the word "points" a PLY of points without faces is a model,
+// too. Ends with status 1 where the stream has an error in place of a mesh, and 2 for a wrong use. For an OpenVDB file
+// it becomes vpe-vdb-reader, with its limits (objects/reader/vdb).
 
 #include <unistd.h>
 
@@ -61,13 +62,14 @@ int main(int count, char** words) {
   objects::ModelFileOptions options;
   const auto up = count >= 4 ? up_of(words[3]) : std::nullopt;
   if (count >= 4) options.unit_m = objects::number_of(words[2]);
-  if (count == 6) {
+  if (count >= 6) {
     options.memory_gb = objects::number_of(words[4]);
     options.time_s = objects::number_of(words[5]);
   }
-  if ((count != 4 && count != 6) || !up || !(options.unit_m > 0) || !(options.memory_gb > 0) ||
-      !(options.time_s >= 1 && options.time_s <= objects::kMostChildTime_s)) {
-    std::fputs("usage: vpe-model-reader FILE UNIT_M auto|y|z [MEMORY_GB TIME_S]\n", stderr);
+  options.allows_points = count == 7 && std::string_view(words[6]) == "points";
+  if ((count != 4 && count != 6 && !options.allows_points) || !up || !(options.unit_m > 0) ||
+      !(options.memory_gb > 0) || !(options.time_s >= 1 && options.time_s <= objects::kMostChildTime_s)) {
+    std::fputs("usage: vpe-model-reader FILE UNIT_M auto|y|z [MEMORY_GB TIME_S [points]]\n", stderr);
     return 2;
   }
   options.up = *up;

@@ -10,6 +10,7 @@
 #include "objects/model/surface_sample.h"
 #include "objects/sticks/column_winding.h"
 #include "objects/sticks/flood_fill.h"
+#include "objects/sticks/grid_around.h"
 #include "objects/sticks/outer_voxels.h"
 #include "objects/sticks/place_index.h"
 #include "objects/sticks/triangle_voxels.h"
@@ -18,11 +19,9 @@ namespace objects {
 
 namespace {
 
-constexpr int kMostVoxelsLongest = 1024;
 constexpr double kLeastArea = 1e-6;  // of a triangle that only touches a voxel
 
-// A grid around a mesh, a little larger, so that its outermost faces lie in voxels and not between two.
-StickGrid grid_around(const Mesh& mesh, int voxels_longest) {
+StickGrid grid_around_mesh(const Mesh& mesh, int voxels_longest) {
   glm::dvec3 low(std::numeric_limits<double>::infinity());
   glm::dvec3 high(-low);
   for (const glm::uvec3& t : mesh.triangles) {
@@ -32,25 +31,7 @@ StickGrid grid_around(const Mesh& mesh, int voxels_longest) {
       high = glm::max(high, p);
     }
   }
-  const glm::dvec3 size_m = high - low;
-  const double far_m = std::max({glm::length(low), glm::length(high), 1e-6});
-  // Coordinates of the grid are floats.
-  const double slack_m = far_m * 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
-  const double longest_m = std::max({size_m.x, size_m.y, size_m.z}) + 4.0 * slack_m;
-  StickGrid grid;
-  grid.voxel_m = std::nextafter(static_cast<float>(longest_m * (1.0 + 1e-6) / voxels_longest),
-                                std::numeric_limits<float>::infinity());
-  const double edge_m = static_cast<double>(grid.voxel_m);
-  const auto side = [&](double extent_m) {
-    const double count = std::ceil((extent_m + 2.0 * slack_m) / edge_m);
-    return static_cast<int>(std::clamp(count, 1.0, static_cast<double>(voxels_longest)));
-  };
-  grid.columns_x = side(size_m.x);
-  grid.columns_y = side(size_m.y);
-  grid.height = side(size_m.z);
-  grid.corner_m =
-      glm::vec3(0.5 * (low + high) - 0.5 * edge_m * glm::dvec3(grid.columns_x, grid.columns_y, grid.height));
-  return grid;
+  return grid_around(low, high, voxels_longest);
 }
 
 // What triangles add to a voxel.
@@ -186,7 +167,7 @@ VoxelGrid voxelise(const Mesh& mesh, const std::vector<TexturePyramid>& textures
     throw std::invalid_argument("a mesh gets 1 to " + std::to_string(kMostVoxelsLongest) +
                                 " voxels along its longest side, not " +
                                 std::to_string(options.voxels_longest));
-  VoxelGrid out(grid_around(mesh, options.voxels_longest));
+  VoxelGrid out(grid_around_mesh(mesh, options.voxels_longest));
   SurfaceVoxels surface(mesh, textures, options.is_tight, out);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) surface.add(t);
   surface.store();

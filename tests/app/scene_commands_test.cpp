@@ -100,6 +100,31 @@ TEST_F(SceneCommands, ObjectDescribesAndChangesVolumes) {
   EXPECT_NE(damaged.err.find("c.volume"), std::string::npos);
 }
 
+TEST_F(SceneCommands, ObjectMakesAVolumeOfARasterOfLevels) {
+  std::ofstream raw(dir_ / "cube.img", std::ios::binary);
+  for (int n = 0; n < 6 * 5 * 4; ++n) raw.put(n == 0 ? 100 : 50);
+  raw.close();
+  write_text(dir_ / "cube.hdr",
+             "ENVI\nsamples = 6\nlines = 5\nbands = 4\nheader offset = 0\nfile type = ENVI Standard\n"
+             "data type = 1\ninterleave = bsq\nbyte order = 0\n");
+  const Result made =
+      vpe({"object", "cube.img", "--levels", "2", "--density", "0.01", "-o", "cube.volume", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto json = parse_json(vpe({"object", "cube.volume", "--json"}).out);
+  EXPECT_EQ(json["spacing_m"], 2);
+  EXPECT_NEAR(json["largest_extinction_per_m"].get<double>(), 1, 1e-6);
+  // From post to post, and half a post or one of nothing around it.
+  for (const auto& [axis, size_m] : {std::pair(0, 10), std::pair(1, 8), std::pair(2, 6)}) {
+    EXPECT_GE(json["size_m"][axis].get<double>(), size_m);
+    EXPECT_LE(json["size_m"][axis].get<double>(), size_m + 4);
+  }
+  EXPECT_EQ(vpe({"object", "cube.volume", "--levels", "2"}).exit_code, 2);
+  EXPECT_EQ(vpe({"object", "cube.img", "--levels", "0"}).exit_code, 2);
+  const Result none = vpe({"object", "none.img", "--levels", "2"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.err.find("none.img"), std::string::npos) << none.err;
+}
+
 TEST_F(SceneCommands, SculptCarvesAHull) {
   write_ellipse("side.png", 210, 110, {200, 40, 40});
   write_ellipse("front.png", 90, 110, {40, 200, 40});

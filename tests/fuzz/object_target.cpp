@@ -122,6 +122,13 @@ void run_mesh(std::span<const std::uint8_t> bytes) {
             "a mesh can be drawn, or there is an error");
   } catch (const std::runtime_error&) {
   }
+  try {
+    const objects::MeshStream stream = objects::read_mesh_stream(bytes, true);
+    require(
+        !stream.error.empty() || !stream.mesh.triangles.empty() || objects::check_points(stream.mesh).empty(),
+        "points are sound, or there is an error");
+  } catch (const std::runtime_error&) {
+  }
 }
 
 std::vector<Bytes> mesh_seeds() {
@@ -140,6 +147,11 @@ std::vector<Bytes> mesh_seeds() {
   mesh.material_table[0].texture = 0;
   add({mesh, {}, "", ""});
   add({{}, {}, "it is damaged", "take another"});
+  objects::Mesh points;
+  points.positions_m = {{0, 0, 0}, {1, 2, 3}};
+  points.normals.assign(2, {0, 0, 1});
+  points.colours.assign(2, {1, 2, 3, 255});
+  add({points, {}, "", ""});
   return all;
 }
 

@@ -131,5 +131,71 @@ TEST(MeshStream, RefusesAMeshThatCannotBeDrawn) {
   }
 }
 
+MeshStream points_example() {
+  MeshStream stream;
+  stream.mesh.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  stream.mesh.normals.assign(3, {0, 0, 1});
+  stream.mesh.colours = {{1, 2, 3, 255}, {5, 6, 7, 255}, {9, 10, 11, 255}};
+  stream.notes = {"1 point is ignored"};
+  return stream;
+}
+
+TEST(MeshStream, PointsAreKeptWhereTheyAreAllowed) {
+  const MeshStream sent = points_example();
+  const MeshStream got = read_mesh_stream(bytes_of(sent), true);
+  EXPECT_EQ(got.mesh.positions_m, sent.mesh.positions_m);
+  EXPECT_EQ(got.mesh.normals, sent.mesh.normals);
+  EXPECT_EQ(got.mesh.colours, sent.mesh.colours);
+  EXPECT_EQ(got.notes, sent.notes);
+  EXPECT_THROW(read_mesh_stream(bytes_of(sent)), std::runtime_error);
+  // A mesh with triangles is checked as one.
+  EXPECT_EQ(read_mesh_stream(bytes_of(example()), true).mesh.triangles.size(), 2U);
+  MeshStream bad = example();
+  bad.mesh.triangles[0].x = 99;
+  EXPECT_THROW(read_mesh_stream(bytes_of(bad), true), std::runtime_error);
+}
+
+TEST(MeshStream, RefusesPointsThatAreNotSound) {
+  const auto refuses = [](const auto& change) {
+    MeshStream stream = points_example();
+    change(stream.mesh);
+    const std::string reason = check_points(stream.mesh);
+    EXPECT_NE(reason, "");
+    try {
+      read_mesh_stream(bytes_of(stream), true);
+      ADD_FAILURE() << reason;
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()), reason);
+    }
+  };
+  refuses([](Mesh& m) { m = {}; });
+  refuses([](Mesh& m) { m.positions_m[1].z = std::numeric_limits<float>::quiet_NaN(); });
+  refuses([](Mesh& m) { m.positions_m[1].z = 2e9F; });
+  refuses([](Mesh& m) { m.normals[2].x = std::numeric_limits<float>::infinity(); });
+  refuses([](Mesh& m) { m.normals.pop_back(); });
+  refuses([](Mesh& m) { m.colours.pop_back(); });
+  refuses([](Mesh& m) { m.uvs.resize(3); });
+  refuses([](Mesh& m) { m.material_table.resize(1); });
+  refuses([](Mesh& m) { m.textures = {{1, 1, {{1, 1, 1, 1}}}}; });
+}
+
+TEST(MeshStream, DamagedPointsGiveCheckedPointsOrAnError) {
+  const std::vector<std::uint8_t> good = bytes_of(points_example());
+  std::mt19937 random(kSeed);
+  for (int n = 0; n < 20'000; ++n) {
+    std::vector<std::uint8_t> bytes = good;
+    for (unsigned k = 0; k <= random() % 3; ++k)
+      bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    try {
+      const MeshStream got = read_mesh_stream(bytes, true);
+      if (got.error.empty()) {
+        EXPECT_EQ(check_points(got.mesh), "");
+      }
+    } catch (const std::runtime_error& error) {
+      EXPECT_STRNE(error.what(), "");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace objects

@@ -1,13 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <glm/common.hpp>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "objects/files/model_file.h"
 #include "objects/files/volume_model_file.h"
+#include "objects/points/voxelise_points.h"
 #include "objects/sticks/build_sticks.h"
 #include "objects/sticks/stick_file.h"
 #include "objects/sticks/voxelise.h"
@@ -18,6 +19,8 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/scene/commands.h"
 #include "vpe/app/scene/level_cache.h"
+#include "vpe/app/scene/model_figures.h"
+#include "vpe/app/scene/point_command.h"
 #include "vpe/app/scene/volume_command.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -26,6 +29,9 @@ namespace vpe::app {
 
 namespace {
 
+constexpr int kCloseVoxels = objects::VoxelisePointsOptions().close_voxels;
+constexpr const char* kCloseIsForPoints = "--close is for point clouds (PLY without faces)";
+
 struct ObjectArguments {
   std::string model;
   std::string output;
@@ -33,56 +39,15 @@ struct ObjectArguments {
   std::string up = "auto";
   int voxels = 256;
   bool is_tight = false;
+  std::optional<int> close_voxels;
   std::string colour;
   double density = 1;
+  double levels_m = 0;  // 0: the model is no raster
 };
-
-struct Extent {
-  glm::dvec3 low_m{0, 0, 0};
-  glm::dvec3 high_m{0, 0, 0};
-};
-
-Extent extent_of(const objects::Mesh& mesh) {
-  Extent e{glm::dvec3(mesh.positions_m.front()), glm::dvec3(mesh.positions_m.front())};
-  for (const glm::vec3& p : mesh.positions_m) {
-    e.low_m = glm::min(e.low_m, glm::dvec3(p));
-    e.high_m = glm::max(e.high_m, glm::dvec3(p));
-  }
-  return e;
-}
-
-std::string size_text(const glm::dvec3& m) {
-  return length_text(m.x, 3) + " wide, " + length_text(m.y, 3) + " long, " + length_text(m.z, 3) + " high";
-}
-
-nlohmann::json sticks_json(const objects::StickModel& sticks) {
-  const objects::StickModel::Level& finest = sticks.levels().front();
-  return {{"columns", {finest.grid.columns_x, finest.grid.columns_y}},
-          {"height", finest.grid.height},
-          {"voxel_m", finest.grid.voxel_m},
-          {"sticks", finest.sticks.size()},
-          {"runs", finest.runs.size()},
-          {"coloured_voxels", finest.voxels.size()},
-          {"levels", sticks.levels().size()}};
-}
-
-void print_sticks(const objects::StickModel& sticks) {
-  const objects::StickModel::Level& finest = sticks.levels().front();
-  std::printf(
-      "%d x %d columns of %d voxels of %s; %zu different sticks, %zu runs, %zu coloured voxels, %zu levels\n",
-      finest.grid.columns_x, finest.grid.columns_y, finest.grid.height,
-      length_text(static_cast<double>(finest.grid.voxel_m), 3).c_str(), finest.sticks.size(),
-      finest.runs.size(), finest.voxels.size(), sticks.levels().size());
-}
 
 // Says what a model of sticks holds.
 void describe_sticks(const ObjectArguments& arguments, const Common& common) {
-  const objects::StickModel sticks = objects::read_stick_file(arguments.model);
-  if (common.json) {
-    print_json(sticks_json(sticks));
-  } else {
-    print_sticks(sticks);
-  }
+  print_sticks(objects::read_stick_file(arguments.model), common);
 }
 
 // Says what a model holds and how far it can be simplified.
@@ -102,20 +67,19 @@ void describe(const ObjectArguments& arguments, objects::ModelFile file, const C
     for (const objects::MeshLevel& level : levels)
       list.push_back(
           {{"triangles", level.mesh.triangles.size()}, {"geometric_error_m", level.geometric_error_m}});
-    const auto numbers = [](const glm::dvec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
     print_json({{"vertices", vertices},
                 {"triangles", levels.front().mesh.triangles.size()},
                 {"materials", materials},
                 {"textures", textures},
-                {"low_m", numbers(extent.low_m)},
-                {"high_m", numbers(extent.high_m)},
+                {"low_m", vector_json(extent.low_m)},
+                {"high_m", vector_json(extent.high_m)},
                 {"levels", std::move(list)},
                 {"notes", file.notes}});
     return;
   }
   std::printf("%zu triangles, %zu vertices, %zu materials, %zu textures\n",
               levels.front().mesh.triangles.size(), vertices, materials, textures);
-  std::printf("%s; the ground is %s above its foot\n", size_text(extent.high_m - extent.low_m).c_str(),
+  std::printf("%s; the ground is %s above its foot\n", extent_text(extent).c_str(),
               length_text(-extent.low_m.z, 3).c_str());
   for (std::size_t n = 1; n < levels.size(); ++n)
     std::printf("level %zu: %zu triangles, within %s\n", n, levels[n].mesh.triangles.size(),
@@ -123,26 +87,40 @@ void describe(const ObjectArguments& arguments, objects::ModelFile file, const C
 }
 
 void run_object(const ObjectArguments& arguments, const Common& common) {
-  const bool is_volume = objects::is_volume_path(arguments.model);
+  const bool is_volume = arguments.levels_m > 0 || objects::is_volume_path(arguments.model);
   check_outputs({{"-o", arguments.output, is_volume ? FileKind::kVolume : FileKind::kSticks}},
                 {arguments.model});
   const bool is_sticks = std::filesystem::path(arguments.model).extension() == ".sticks";
+  if (arguments.levels_m > 0 && (is_sticks || objects::is_volume_path(arguments.model)))
+    throw UsageError("--levels is for rasters with a band for each level, and " + arguments.model +
+                     " is a model already");
   if (is_sticks && !arguments.output.empty())
     throw UsageError(arguments.model + ": is a model of sticks already; name the model that it was made from");
+  if (arguments.close_voxels && (is_sticks || is_volume)) throw UsageError(kCloseIsForPoints);
   if (is_sticks) return describe_sticks(arguments, common);
   static const std::map<std::string, objects::UpAxis> kAxes{
       {"auto", objects::UpAxis::kAuto}, {"y", objects::UpAxis::kY}, {"z", objects::UpAxis::kZ}};
-  const objects::ModelFileOptions options{.unit_m = arguments.unit_m, .up = kAxes.at(arguments.up)};
+  objects::ModelFileOptions options{.unit_m = arguments.unit_m, .up = kAxes.at(arguments.up)};
   if (is_volume)
-    return run_volume({arguments.model, arguments.output, options, arguments.colour, arguments.density},
-                      common);
+    return run_volume(
+        {arguments.model, arguments.output, options, arguments.colour, arguments.density, arguments.levels_m},
+        common);
   if (!arguments.colour.empty() || arguments.density != 1)
-    throw UsageError("--colour and --density are for volumes (.volume, .vdb)");
+    throw UsageError("--colour and --density are for volumes (.volume, .vdb, rasters with --levels)");
+  options.allows_points = true;
   objects::ModelFile file = objects::read_model_file(arguments.model, options);
+  const bool is_points = file.mesh.triangles.empty();
+  if (is_points && arguments.is_tight)
+    throw UsageError("--tight is for models with faces, and " + arguments.model + " has points alone");
+  if (!is_points && arguments.close_voxels) throw UsageError(kCloseIsForPoints);
   if (!common.quiet) {
     for (const std::string& note : file.notes)
       std::fprintf(stderr, "vpe: note: %s: %s\n", arguments.model.c_str(), note.c_str());
   }
+  if (is_points)
+    return run_points(
+        {arguments.model, arguments.output, arguments.voxels, arguments.close_voxels.value_or(kCloseVoxels)},
+        file, common);
   if (arguments.output.empty()) return describe(arguments, std::move(file), common);
   std::vector<objects::TexturePyramid> textures;
   for (objects::Texture& t : file.mesh.textures) textures.emplace_back(std::move(t));
@@ -150,12 +128,7 @@ void run_object(const ObjectArguments& arguments, const Common& common) {
   const objects::StickModel sticks = objects::build_sticks(objects::voxelise(
       file.mesh, textures, {.voxels_longest = arguments.voxels, .is_tight = arguments.is_tight}));
   objects::write_stick_file(arguments.output, sticks);
-  if (common.json) {
-    print_json(sticks_json(sticks));
-  } else if (!common.quiet) {
-    std::printf("%s: ", arguments.output.c_str());
-    print_sticks(sticks);
-  }
+  print_written_sticks(arguments.output, sticks, common);
 }
 
 }  // namespace
@@ -166,8 +139,10 @@ void add_object(CLI::App& program, Common& common) {
       add_command(program, "object",
                   "Describe a model of an object, or make a model of sticks (voxels) from it", common, true);
   command
-      ->add_option("MODEL", arguments->model,
-                   "Model: .glb, .gltf, .obj, .ply, .stl, .sticks, or a volume: .volume, .vdb (OpenVDB)")
+      ->add_option(
+          "MODEL", arguments->model,
+          "Model: .glb, .gltf, .obj, .ply (faces, or points alone), .stl, .sticks, or a volume: .volume, "
+          ".vdb (OpenVDB)")
       ->required();
   command->add_option(
       "-o,--output", arguments->output,
@@ -186,15 +161,30 @@ void add_object(CLI::App& program, Common& common) {
   command->add_flag(
       "--tight", arguments->is_tight,
       "Leave out voxels whose centres lie outside: silhouettes are then no larger than the model's");
+  command
+      ->add_option("--close", arguments->close_voxels,
+                   "Close gaps between points of a cloud that are up to twice so many voxels wide")
+      ->check(CLI::Range(0, objects::kMostCloseVoxels))
+      ->default_str(std::to_string(kCloseVoxels));
   command->add_option("--colour", arguments->colour, "Colour of a volume in full light, rrggbb");
   command->add_option("--density", arguments->density, "Factor on the extinction of a volume")
       ->check(number_within(1e-9, 1e9))
       ->capture_default_str();
-  add_examples(*command,
-               {{"what a model holds, and how far it can be simplified", "vpe object rover.glb"},
-                {"a model of sticks of it", "vpe object rover.glb -o rover.sticks --voxels 512"},
-                {"a drawing in millimetres", "vpe object part.stl --unit 0.001 -o part.sticks"},
-                {"a volume of OpenVDB", "vpe object smoke.vdb --density 0.2 --colour c8a078 -o smoke.volume"}});
+  command
+      ->add_option(
+          "--levels", arguments->levels_m,
+          "MODEL is a raster with a band for each level of a volume, from the lowest up; its values, 1/m, are so "
+          "many metres apart each way")
+      ->check(number_within(1e-4, 1e6));
+  add_examples(
+      *command,
+      {{"what a model holds, and how far it can be simplified", "vpe object rover.glb"},
+       {"a model of sticks of it", "vpe object rover.glb -o rover.sticks --voxels 512"},
+       {"a model of sticks of a point cloud (PLY without faces)",
+        "vpe object cloud.ply -o rock.sticks --voxels 512 --close 2"},
+       {"a drawing in millimetres", "vpe object part.stl --unit 0.001 -o part.sticks"},
+       {"a volume of OpenVDB", "vpe object smoke.vdb --density 0.2 --colour c8a078 -o smoke.volume"},
+       {"a volume of a raster with a band for each level", "vpe object cube.vrt --levels 0.5 -o cave.volume"}});
   command->callback([arguments, &common] { run_object(*arguments, common); });
 }
 
