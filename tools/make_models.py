@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the example models of scripts/scenes/models: a rover, a lander and rocks, as binary glTF.
+"""Writes the example models of scripts/scenes/models: a rover, a lander, rocks, a pit with a tube and an arch, as binary glTF.
 
 usage: tools/make_models.py [FOLDER]
 
@@ -358,12 +358,65 @@ def rock(seed):
     return m
 
 
+def along_line(m, material, line, radii, seed, roughness, segments=26):
+    """A closed tube along a line of points, with a radius across and one upwards at each; rough by a share of them."""
+    rings = []
+    for n, middle in enumerate(line):
+        way = unit(add(line[min(n + 1, len(line) - 1)], scaled(line[max(n - 1, 0)], -1)))
+        side = unit(cross(way, [0, 0, 1])) if abs(way[2]) < 0.999 else [1, 0, 0]
+        up = cross(side, way)
+        ring = []
+        for k in range(segments):
+            a = 2 * math.pi * k / segments
+            out = add(scaled(side, radii[n][0] * math.cos(a)), scaled(up, radii[n][1] * math.sin(a)))
+            place = add(middle, out)
+            share = sum(size * noise(seed, *(c / length + 50 for c in place))
+                        for length, size in ((0.8 * radii[n][0], 1.0), (0.3 * radii[n][0], 0.45)))
+            ring.append(add(middle, scaled(out, 1 + roughness * share)))
+        rings.append(ring)
+    for ring, other in zip(rings, rings[1:]):
+        for k in range(segments):
+            q = (k + 1) % segments
+            m.quad(material, ring[q], ring[k], other[k], other[q])
+    for ring, middle, turn in ((rings[0], line[0], 0), (rings[-1], line[-1], 1)):
+        for k in range(segments):
+            pair = [ring[k], ring[(k + 1) % segments]]
+            m.face(material, [middle] + (pair[::-1] if turn else pair))
+
+
+def skylight():
+    """A pit that widens downwards and opens into a tube; to be cut out of the ground."""
+    m = Model()
+    depths = [6, 0, -5, -10, -16, -22, -27]
+    along_line(m, "rock", [[0, 0, z] for z in reversed(depths)],
+               [(18 + 0.25 * max(0, -z), 18 + 0.25 * max(0, -z)) for z in reversed(depths)], 5, 0.10)
+    line = [[4 * math.sin(y / 40), y, -24 - 0.02 * y] for y in range(-120, 121, 8)]
+    ends = [min(1.0, 0.55 + 0.06 * min(n, len(line) - 1 - n)) for n in range(len(line))]
+    along_line(m, "rock", line, [(17 * e, 11 * e) for e in ends], 9, 0.09)
+    return m
+
+
+def arch():
+    """A natural bridge; its feet are in the ground."""
+    m = Model()
+    line, radii = [], []
+    for n in range(37):
+        a = math.pi * (n / 36 * 1.3 - 0.15)
+        line.append([24 * math.cos(a), 3 * math.sin(2 * a), 19 * math.sin(a)])
+        wide = 4.2 + 3.2 * abs(math.cos(a)) ** 3
+        radii.append((wide, 0.85 * wide))
+    along_line(m, "rock", line, radii, 23, 0.13)
+    return m
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..",
                                                                 "scripts", "scenes", "models")
     os.makedirs(folder, exist_ok=True)
     write_glb(rover(), os.path.join(folder, "rover.glb"))
     write_glb(lander(), os.path.join(folder, "lander.glb"))
+    write_glb(skylight(), os.path.join(folder, "skylight.glb"))
+    write_glb(arch(), os.path.join(folder, "arch.glb"))
     for n in range(4):
         write_glb(rock(17 + 101 * n), os.path.join(folder, "rock%d.glb" % (n + 1)))
 

@@ -17,6 +17,7 @@
 //   lon = 137.4                                # height = 0 above the ground, or altitude above the sphere
 //   lat = -4.6                                 # heading = 0, pitch = 0, roll = 0, scale = 1
 //   align = "slope"                            # or "vertical"; interest_levels = 0
+//   ground = "cut"                             # or "add": part of the ground; voxel_m, and solid_above for volumes
 //   [[scatter]]                                # models = ["stone", ...]; name
 //   models = ["rover"]                         # polygon = [[lon, lat], ...], its edges are great circles
 //   polygon = [[0, 0], [0.1, 0], [0, 0.1]]     # seed = 1, buried = 0.3, align, tumble = false, most
@@ -81,11 +82,20 @@ struct Placing {
   double scale = 1;
 };
 
+// Says how an object is part of the ground.
+struct GroundRole {
+  enum class Kind : std::uint8_t { kNone, kAdd, kCut };
+  Kind kind = Kind::kNone;
+  double voxel_m = 0;            // side of its voxels; 0: a 128th of its diameter
+  double solid_above_per_m = 0;  // extinction from which on a volume is solid; 0: half of its largest one
+};
+
 struct ObjectEntry {
   std::string name;       // "": none
   std::size_t model = 0;  // of SceneFile::models
   std::vector<Placing> places;
   double interest_levels = 0;  // by which the ground around it is finer
+  GroundRole ground = {};
 };
 
 // Describes N rocks of at least D for a square metre, N ~ D^-exponent, all within the diameters of the entry.

@@ -7,6 +7,7 @@
 
 #include "objects/files/scene_file.h"
 #include "objects/files/scene_limits.h"
+#include "objects/files/volume_model_file.h"
 #include "vpe/base/quote.h"
 #include "vpe/base/toml_table.h"
 
@@ -97,7 +98,7 @@ class SceneTomlReader {
 
   void read_object(const TomlTable& table) {
     table.require_known({"name", "model", "lon", "lat", "at", "height", "altitude", "heading", "pitch", "roll",
-                         "scale", "align", "interest_levels"});
+                         "scale", "align", "interest_levels", "ground", "voxel_m", "solid_above"});
     ObjectEntry object;
     object.name = name_of(table);
     object.model = model_of(table, table.at("model"), "model");
@@ -114,6 +115,7 @@ class SceneTomlReader {
     placing.roll_deg = table.number("roll", kAngleRange_deg, 0);
     placing.scale = table.number("scale", kScaleRange, 1);
     placing.follows_slope = follows_slope(table);
+    read_ground(table, object);
     if (table.has("at")) {
       read_replicas(table, placing, object);
     } else {
@@ -123,6 +125,26 @@ class SceneTomlReader {
     }
     count_instances(table, object.places.size());
     scene_.objects.push_back(std::move(object));
+  }
+
+  void read_ground(const TomlTable& table, ObjectEntry& object) const {
+    if (table.has("ground")) {
+      object.ground.kind =
+          table.choice("ground", {"add", "cut"}) == 0 ? GroundRole::Kind::kAdd : GroundRole::Kind::kCut;
+    }
+    for (const char* key : {"voxel_m", "solid_above"}) {
+      if (table.has(key) && !table.has("ground"))
+        table.fail(table.at(key), std::string(key) +
+                                      " is for objects that are part of the ground; add ground = "
+                                      "\"add\" or \"cut\"");
+    }
+    if (table.has("voxel_m")) object.ground.voxel_m = table.number("voxel_m", kGroundVoxelRange_m);
+    if (!table.has("solid_above")) return;
+    const ModelEntry& model = scene_.models[object.model];
+    if (!model.formula && !is_volume_path(model.file))
+      table.fail(table.at("solid_above"), "solid_above is for volumes, and " +
+                                              vpe::base::quote_text(model.name) + " is none; leave it out");
+    object.ground.solid_above_per_m = table.number("solid_above", kExtinctionRange_per_m);
   }
 
   void read_replicas(const TomlTable& table, const Placing& like, ObjectEntry& object) {

@@ -131,7 +131,7 @@ class SceneTomlWriter {
   }
 
   void write_object(const ObjectEntry& object) {
-    const auto& [name, model, places, interest_levels] = object;
+    const auto& [name, model, places, interest_levels, ground] = object;
     for (std::size_t first = 0; first < places.size();) {
       std::size_t end = first + 1;
       while (end < places.size() && is_alike(places[first], places[end])) ++end;
@@ -140,8 +140,17 @@ class SceneTomlWriter {
       add_name(name);
       write_places(places, first, end);
       add_number("interest_levels", interest_levels, 0);
+      write_ground(ground);
       first = end;
     }
+  }
+
+  void write_ground(const GroundRole& ground) {
+    const auto& [kind, voxel_m, solid_above_per_m] = ground;
+    if (kind == GroundRole::Kind::kNone) return;
+    add("ground", kind == GroundRole::Kind::kCut ? "\"cut\"" : "\"add\"");
+    add_number("voxel_m", voxel_m, 0);
+    add_number("solid_above", solid_above_per_m, 0);
   }
 
   void write_places(const std::vector<Placing>& places, std::size_t first, std::size_t end) {

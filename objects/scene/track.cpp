@@ -20,6 +20,7 @@ TrackTarget track_target(const SceneFile& scene, const vpe::core::ObjectTrack& t
     if (scene.objects[n].name != track.name) continue;
     take(false, n);
     if (scene.objects[n].places.size() != 1) throw fail("one with several places");
+    if (scene.objects[n].ground.kind != GroundRole::Kind::kNone) throw fail("one that is part of the ground");
   }
   for (std::size_t n = 0; n < scene.paths.size(); ++n) {
     if (scene.paths[n].name == track.name) take(true, n);

@@ -15,7 +15,7 @@ struct TrackTarget {
 };
 
 // Returns the one object or path of a scene that has the name of a track. Throws std::runtime_error, naming the scene
-// file, if there is none or several, or if it has several places.
+// file, if there is none or several, or if it has several places or is part of the ground.
 TrackTarget track_target(const SceneFile& scene, const vpe::core::ObjectTrack& track);
 
 // Returns the points of a track as those of a path.

@@ -23,11 +23,9 @@ double level_ground(const glm::dvec3& /*direction*/) { return kGround_m; }
 SceneFile scene_of_names() {
   SceneFile scene;
   scene.path = "a.scene.toml";
-  scene.objects = {{"lander", 0, {Placing{}}, 0},
-                   {"rocks", 0, {Placing{}, Placing{}}, 0},
-                   {"twice", 0, {Placing{}}, 0},
-                   {"twice", 0, {Placing{}}, 0},
-                   {"both", 0, {Placing{}}, 0}};
+  scene.objects = {{"lander", 0, {Placing{}}, 0}, {"rocks", 0, {Placing{}, Placing{}}, 0},
+                   {"twice", 0, {Placing{}}, 0},  {"twice", 0, {Placing{}}, 0},
+                   {"both", 0, {Placing{}}, 0},   {"pit", 0, {Placing{}}, 0, {GroundRole::Kind::kCut}}};
   scene.paths.resize(2);
   scene.paths[0].name = "both";
   scene.paths[1].name = "rover";
@@ -53,6 +51,7 @@ TEST(Track, NamesOneObjectOrPath) {
       "a.scene.toml: expected one object or path with the name \"ghost\", which the flight moves, found none");
   EXPECT_TRUE(error_of("rocks").ends_with("found one with several places"));
   EXPECT_TRUE(error_of("twice").ends_with("found several"));
+  EXPECT_TRUE(error_of("pit").ends_with("found one that is part of the ground"));
   EXPECT_TRUE(error_of("both").ends_with("found several"));
 }
 

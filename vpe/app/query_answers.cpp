@@ -1,6 +1,5 @@
 #include "vpe/app/query_answers.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -47,20 +46,15 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
           {"illustration", source != nullptr && source->illustration}};
 }
 
-nlohmann::json surface_to_json(const PlaceSurface& s, const PlaceSurface& ground) {
+nlohmann::json surface_to_json(const PlaceSurface& s, const paging::PlaceAnswer& ground) {
   using nlohmann::json;
   const auto value = [](bool is_known, double x) { return is_known ? json(x) : json(); };
   return {{"surface", s.object ? "object" : "ground"},
           {"object", s.object ? json(*s.object) : json()},
           {"side", s.is_top ? "top" : "underside"},
           {"height_m", value(!s.nodata, s.height_m)},
-          {"above_ground_m", value(!ground.nodata, s.height_m - ground.height_m)},
+          {"above_ground_m", value(!ground.nodata, s.height_m - ground.elevation_m)},
           {"surface_error_m", value(!s.nodata, s.geometric_error_m)}};
-}
-
-// Returns the ground among the surfaces of a place.
-const PlaceSurface& ground_among(const std::vector<PlaceSurface>& surfaces) {
-  return *std::find_if(surfaces.begin(), surfaces.end(), [](const PlaceSurface& s) { return !s.object; });
 }
 
 std::string fixed(double x, int digits) {
@@ -103,11 +97,11 @@ std::string top_cells(const std::optional<ObjectTop>& top) {
   return top ? "," + csv_field(top->name) + "," + fixed(top->top_m, 3) : ",,";
 }
 
-std::string surface_cells(const PlaceSurface& s, const PlaceSurface& ground) {
+std::string surface_cells(const PlaceSurface& s, const paging::PlaceAnswer& ground) {
   std::string cells = s.object ? ",object," : ",ground,";
   cells += s.is_top ? "top," : "underside,";
   cells += (s.nodata ? "" : fixed(s.height_m, 3)) + ",";
-  cells += (ground.nodata ? "" : fixed(s.height_m - ground.height_m, 3)) + ",";
+  cells += (ground.nodata ? "" : fixed(s.height_m - ground.elevation_m, 3)) + ",";
   cells += s.nodata ? "" : fixed(s.geometric_error_m, 6);
   return cells + "," + (s.object ? csv_field(*s.object) : "");
 }
@@ -143,7 +137,7 @@ void print_json_answers(const QueryAnswers& answers, const PlaceTable& table, co
     if (answers.surfaces) {
       const std::vector<PlaceSurface>& surfaces = (*answers.surfaces)[n];
       for (const PlaceSurface& s : surfaces)
-        answer["surfaces"].push_back(surface_to_json(s, ground_among(surfaces)));
+        answer["surfaces"].push_back(surface_to_json(s, answers.ground[n]));
     }
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       answer["input"][table.columns[c]] = table.cells[n][c];
@@ -170,7 +164,7 @@ void print_csv_answers(const QueryAnswers& answers, const PlaceTable& table, con
     const std::vector<PlaceSurface>& surfaces = (*answers.surfaces)[n];
     for (const PlaceSurface& s : surfaces)
       std::puts(
-          (place + surface_cells(s, ground_among(surfaces)) + (s.object ? kNoGround : ground) + input).c_str());
+          (place + surface_cells(s, answers.ground[n]) + (s.object ? kNoGround : ground) + input).c_str());
   }
 }
 

@@ -29,33 +29,32 @@ struct QueryArguments {
   bool fail_on_nodata = false;
 };
 
-// Returns the objects of a scene file; null without one.
-std::shared_ptr<const objects::Scene> objects_on(const paging::Surface& surface, const std::string& file,
-                                                 bool quiet) {
-  if (file.empty()) return nullptr;
+// Returns the objects of a scene file; none without one.
+PlacedScene objects_on(const paging::Surface& surface, const std::string& file, bool quiet) {
+  if (file.empty()) return {};
   SceneLibrary library(surface);
-  const PlacedScene placed = library.scene(file, 1, 0);
+  PlacedScene placed = library.scene(file, 1, 0);
   if (!quiet) {
     for (const std::string& note : library.take_notes()) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
   }
-  return placed.scene;
+  return placed;
 }
 
 // Finds what lies on the ground of the answers: the highest object, and all surfaces if they are asked for.
 void add_objects(const QueryArguments& arguments, const paging::Surface& surface,
                  const std::vector<mars::LonLat>& places, bool quiet, base::ThreadPool& pool,
                  QueryAnswers& answers) {
-  const std::shared_ptr<const objects::Scene> scene = objects_on(surface, arguments.scene, quiet);
-  if (scene != nullptr) answers.tops.emplace(places.size());
+  const PlacedScene placed = objects_on(surface, arguments.scene, quiet);
+  if (placed.scene != nullptr) answers.tops.emplace(places.size());
   if (arguments.all_surfaces) answers.surfaces.emplace(places.size());
   if (!answers.tops && !answers.surfaces) return;
   const double radius_m = surface.planet_radius_m();
   pool.run(places.size(), [&](std::size_t n) {
     const paging::PlaceAnswer& a = answers.ground[n];
-    if (answers.tops) (*answers.tops)[n] = highest_object(*scene, places[n], radius_m);
+    if (answers.tops) (*answers.tops)[n] = highest_object(*placed.scene, places[n], radius_m);
     if (answers.surfaces)
       (*answers.surfaces)[n] =
-          surfaces_at(scene.get(), places[n], {a.elevation_m, a.geometric_error_m, a.nodata}, radius_m);
+          surfaces_at(placed, places[n], {a.elevation_m, a.geometric_error_m, a.nodata}, radius_m);
   });
 }
 

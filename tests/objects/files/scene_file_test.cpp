@@ -50,6 +50,7 @@ TEST(SceneToml, ReadsObjects) {
   EXPECT_EQ(stones.name, "");
   EXPECT_EQ(stones.model, 1U);
   EXPECT_EQ(stones.interest_levels, 0);
+  EXPECT_EQ(stones.ground.kind, GroundRole::Kind::kNone);
   ASSERT_EQ(stones.places.size(), 2U);
   EXPECT_EQ(stones.places[0].heading_deg, 5);
   EXPECT_EQ(stones.places[1].heading_deg, 30);
@@ -59,6 +60,22 @@ TEST(SceneToml, ReadsObjects) {
   EXPECT_EQ(stones.places[1].height_m, 100);
   EXPECT_EQ(stones.places[1].scale, 1);
   EXPECT_FALSE(stones.places[1].follows_slope);
+}
+
+TEST(SceneToml, ReadsPartsOfTheGround) {
+  const SceneFile scene = toml(
+      "version = 1\n[[model]]\nname = \"pit\"\nfile = \"pit.glb\"\n"
+      "[[model]]\nname = \"fog\"\nfile = \"fog.vdb\"\n"
+      "[[object]]\nmodel = \"pit\"\nlon = 1\nlat = 2\nground = \"cut\"\nvoxel_m = 0.5\n"
+      "[[object]]\nmodel = \"fog\"\nat = [[1, 2], [3, 4, 5]]\nground = \"add\"\nsolid_above = 0.02\n");
+  ASSERT_EQ(scene.objects.size(), 2U);
+  EXPECT_EQ(scene.objects[0].ground.kind, GroundRole::Kind::kCut);
+  EXPECT_EQ(scene.objects[0].ground.voxel_m, 0.5);
+  EXPECT_EQ(scene.objects[0].ground.solid_above_per_m, 0);
+  EXPECT_EQ(scene.objects[1].ground.kind, GroundRole::Kind::kAdd);
+  EXPECT_EQ(scene.objects[1].ground.voxel_m, 0);
+  EXPECT_EQ(scene.objects[1].ground.solid_above_per_m, 0.02);
+  EXPECT_EQ(scene.objects[1].places.size(), 2U);
 }
 
 TEST(SceneToml, ReadsScattersAndPaths) {

@@ -43,7 +43,9 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 }
 bool same(const ObjectEntry& a, const ObjectEntry& b) {
   return a.name == b.name && a.model == b.model && same(a.interest_levels, b.interest_levels) &&
-         same(a.places, b.places);
+         same(a.places, b.places) && a.ground.kind == b.ground.kind &&
+         same(a.ground.voxel_m, b.ground.voxel_m) &&
+         same(a.ground.solid_above_per_m, b.ground.solid_above_per_m);
 }
 bool same(const PathPoint& a, const PathPoint& b) {
   return same(a.time_s, b.time_s) && same(a.place, b.place) && a.heading_deg == b.heading_deg &&
@@ -114,6 +116,11 @@ class AnyScene {
         object.places.push_back(like);
         object.places.back().place = place();
         object.places.back().heading_deg = number(kAngleRange_deg);
+      }
+      object.ground.kind = static_cast<GroundRole::Kind>(below(3));
+      if (object.ground.kind != GroundRole::Kind::kNone && below(2) == 0) {
+        object.ground.voxel_m = number(kGroundVoxelRange_m);
+        if (object.model >= files) object.ground.solid_above_per_m = number(kExtinctionRange_per_m);
       }
       scene.objects.push_back(object);
     }

@@ -11,6 +11,7 @@
 #include "vpe/app/scene/scene_library.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/shading.h"
+#include "vpe/voxel/ray_request.h"
 
 namespace vpe::app {
 
@@ -36,7 +37,20 @@ class ObjectPass {
     return placed;
   }
 
-  void draw(const PlacedScene& placed, const core::DrawRequest& request, bool is_exact,
+  // Tells once for each scene that what is cut out of the ground is not drawn.
+  void note_cuts(const PlacedScene& placed, const core::DrawRequest& request) {
+    if (!note_ || !placed.parts || told_of_ == placed.parts || voxel::is_volume_mode(request.settings.ray_mode))
+      return;
+    told_of_ = placed.parts;
+    const bool has_cuts = std::ranges::any_of(*placed.parts, [](const PlacedPart& part) {
+      return part.role.kind == objects::GroundRole::Kind::kCut;
+    });
+    if (has_cuts)
+      note_(request.settings.scene +
+            ": what is cut out of the ground is drawn by rays, with rays.mode=volume or boundary");
+  }
+
+  void draw(const objects::Scene& scene, const core::DrawRequest& request, bool is_exact,
             std::span<const std::uint8_t> only, core::Frame& frame, core::DrawResult& result) {
     core::Certificate& certificate = result.certificate;
     core::DrawRequest for_planet = request;
@@ -45,7 +59,7 @@ class ObjectPass {
                                     paging::shading_params(for_planet.settings, request.sun,
                                                            planet_->meta().finest_image_level >= 0, nullptr));
     const objects::ComposedObjects drawn =
-        objects::compose(*placed.scene, {for_planet, planet_->radius_m(), &light},
+        objects::compose(scene, {for_planet, planet_->radius_m(), &light},
                          objects::level_rule(for_planet, is_exact), pool_, frame, only);
     result.clear_of_objects_m = drawn.clear_m;
     result.shows_see_through = drawn.is_see_through;
@@ -66,6 +80,7 @@ class ObjectPass {
   base::ThreadPool pool_;
   SceneLibrary library_;
   std::function<void(const std::string&)> note_;
+  std::shared_ptr<const PlacedParts> told_of_;
 };
 
 bool has_objects(const core::DrawRequest& request) { return !request.settings.scene.empty(); }
@@ -77,14 +92,14 @@ bool needs_own_ranges(const core::SettingsValues& settings) {
 }
 
 // Returns the request of the ground below the objects: with ranges, without gamma.
-core::DrawRequest ground_request(const core::DrawRequest& request,
-                                 const std::vector<core::InterestRegion>& interest) {
+core::DrawRequest ground_request(const core::DrawRequest& request, const PlacedScene& placed) {
   core::DrawRequest ground = request;
   ground.settings.scene.clear();
   ground.settings.gamma = 1;
   ground.want_rough_range = true;
   ground.want_range = request.want_range || !request.want_colour || needs_own_ranges(request.settings);
-  ground.interest.insert(ground.interest.end(), interest.begin(), interest.end());
+  ground.interest.insert(ground.interest.end(), placed.interest.begin(), placed.interest.end());
+  ground.ground_parts = placed.ground_parts;
   return ground;
 }
 
@@ -107,14 +122,15 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
   core::DrawResult draw(const core::DrawRequest& request) override {
     if (!has_objects(request)) return ground_->draw(request);
     const PlacedScene placed = pass().scene(request);
-    core::DrawRequest below = ground_request(request, placed.interest);
+    pass().note_cuts(placed, request);
+    core::DrawRequest below = ground_request(request, placed);
     if (request.paging.next && has_objects(*request.paging.next))
       below.paging.next =
-          std::make_shared<const core::DrawRequest>(ground_request(*request.paging.next, placed.interest));
+          std::make_shared<const core::DrawRequest>(ground_request(*request.paging.next, placed));
     core::DrawResult result = ground_->draw(below);
     if (!result.certificate.is_below_ground && !result.frame.range_m.empty()) {
-      pass().draw(placed, within_triangle_limit(request, result.certificate), is_exact(request), {},
-                  result.frame, result);
+      pass().draw(drawn_objects(placed, request), within_triangle_limit(request, result.certificate),
+                  is_exact(request), {}, result.frame, result);
     }
     core::apply_gamma(result.frame.colour, request.settings.gamma);
     if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
@@ -130,6 +146,12 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
   }
 
  protected:
+  // What is added to the ground is an object where the ground is drawn without it.
+  static const objects::Scene& drawn_objects(const PlacedScene& placed, const core::DrawRequest& request) {
+    const bool draws_parts = std::is_same_v<Base, core::PixelRenderer> && voxel::draws_ground_parts(request);
+    return draws_parts ? *placed.apart : *placed.scene;
+  }
+
   // Rays meet the surface itself; triangles and cells keep to a tolerance.
   static bool is_exact(const core::DrawRequest& request) {
     return std::is_same_v<Base, core::PixelRenderer> && request.settings.ray_mode == core::RayMode::kExact &&
@@ -157,9 +179,9 @@ class ObjectPixelRenderer : public ObjectRenderer<core::PixelRenderer> {
                                core::Frame& frame) override {
     if (!has_objects(request)) return ground_->draw_pixels(request, wanted, frame);
     const PlacedScene placed = pass().scene(request);
-    core::DrawResult result = ground_->draw_pixels(ground_request(request, placed.interest), wanted, frame);
+    core::DrawResult result = ground_->draw_pixels(ground_request(request, placed), wanted, frame);
     if (!result.certificate.is_below_ground)
-      pass().draw(placed, request, is_exact(request), wanted.is_wanted, frame, result);
+      pass().draw(drawn_objects(placed, request), request, is_exact(request), wanted.is_wanted, frame, result);
     return result;
   }
 };

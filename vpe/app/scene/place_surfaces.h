@@ -2,7 +2,7 @@
 // vertical.
 //
 // Typical usage:
-//   for (const PlaceSurface& s : surfaces_at(&scene, place, ground, radius_m)) tell(s.object, s.height_m);
+//   for (const PlaceSurface& s : surfaces_at(placed, place, ground, radius_m)) tell(s.object, s.height_m);
 #pragma once
 
 #include <optional>
@@ -11,6 +11,7 @@
 
 #include "mars/geodesy/sphere.h"
 #include "objects/scene/scene.h"
+#include "vpe/app/scene/scene_library.h"
 
 namespace vpe::app {
 
@@ -43,10 +44,11 @@ struct PlaceSurface {
 };
 
 // Returns the surfaces along the vertical through a place, from the highest to the lowest, and the ground last
-// where it has no data. Every object alternates between tops and undersides; surfaces of different objects and
-// of the ground are all there, also where they lie in one another. At equal heights an underside comes before
-// the top below it, and the ground last. `scene` may be null: the ground alone. Any thread may call it.
-std::vector<PlaceSurface> surfaces_at(const objects::Scene* scene, const mars::LonLat& place,
+// where it has no data. Every object and the ground alternate between tops and undersides; surfaces of different
+// objects and of the ground are all there, also where they lie in one another. The ground has more than one where
+// something is cut out of it. At equal heights an underside comes before the top below it, and the ground last.
+// Without a scene and parts it is the ground alone. Any thread may call it.
+std::vector<PlaceSurface> surfaces_at(const PlacedScene& placed, const mars::LonLat& place,
                                       const PlaceGround& ground, double planet_radius_m);
 
 }  // namespace vpe::app

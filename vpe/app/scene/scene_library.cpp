@@ -136,14 +136,22 @@ void SceneLibrary::place_standing(double exaggeration) {
     objects::Instance instance = objects::place_instance(placing, size_m, planet_radius_m, radius_m);
     instance.model = static_cast<std::uint32_t>(model);
     instance.name = name;
-    standing.instances.push_back(instance);
-    return size_m;
+    return std::pair(instance, size_m);
   };
+  PlacedParts parts;
   for (const objects::ObjectEntry& entry : entries_.objects) {
     const std::uint32_t name = name_index(entry.name);
     standing.begins.push_back({standing.instances.size(), standing.interest.size()});
     for (const objects::Placing& placing : entry.places) {
-      const double size_m = place(placing, entry.model, name);
+      const auto [instance, size_m] = place(placing, entry.model, name);
+      if (entry.ground.kind != objects::GroundRole::Kind::kNone) {
+        parts.push_back(
+            {std::make_shared<const objects::Scene>(models_, std::vector<objects::Instance>{instance}, names_),
+             entry.ground});
+        if (entry.ground.kind == objects::GroundRole::Kind::kAdd) standing.added.push_back(instance);
+      } else {
+        standing.instances.push_back(instance);
+      }
       if (entry.interest_levels != 0)
         standing.interest.push_back(region_around(placing.place, size_m, entry.interest_levels));
     }
@@ -154,11 +162,35 @@ void SceneLibrary::place_standing(double exaggeration) {
   for (const objects::ScatterEntry& entry : entries_.scatters) {
     const std::uint32_t name = name_index(entry.name);
     for (const objects::Scattered& rock : objects::scatter(entry, rocks, planet_radius_m))
-      place(rock.placing, rock.model, name);
+      standing.instances.push_back(place(rock.placing, rock.model, name).first);
   }
-  if (entries_.paths.empty())
-    standing.scene = std::make_shared<const objects::Scene>(models_, standing.instances, names_);
+  if (!parts.empty()) {
+    standing.ground_parts = ground_parts(parts, planet_radius_m);
+    standing.parts = std::make_shared<const PlacedParts>(std::move(parts));
+  }
   standing_ = std::move(standing);
+  if (entries_.paths.empty()) {
+    const PlacedScene placed = with_parts(standing_->instances, {});
+    standing_->scene = placed.scene;
+    standing_->apart = placed.apart;
+  }
+}
+
+PlacedScene SceneLibrary::with_parts(std::vector<objects::Instance> instances,
+                                     std::vector<core::InterestRegion> interest) const {
+  PlacedScene placed;
+  placed.interest = std::move(interest);
+  placed.parts = standing_->parts;
+  placed.ground_parts = standing_->ground_parts;
+  if (standing_->added.empty()) {
+    placed.apart = std::make_shared<const objects::Scene>(models_, std::move(instances), names_);
+    placed.scene = placed.apart;
+    return placed;
+  }
+  placed.apart = std::make_shared<const objects::Scene>(models_, instances, names_);
+  instances.insert(instances.end(), standing_->added.begin(), standing_->added.end());
+  placed.scene = std::make_shared<const objects::Scene>(models_, std::move(instances), names_);
+  return placed;
 }
 
 void SceneLibrary::move(const core::ObjectTrack& track, double time_s, double exaggeration,
@@ -199,7 +231,9 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
   read(file);
   if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
   const bool has_tracks = tracks != nullptr && !tracks->empty();
-  if (standing_->scene && !has_tracks) return {standing_->scene, standing_->interest, false};
+  if (standing_->scene && !has_tracks)
+    return {standing_->scene, standing_->interest, false,
+            standing_->apart, standing_->parts,    standing_->ground_parts};
   std::vector<objects::Instance> instances = standing_->instances;
   std::vector<core::InterestRegion> interest = standing_->interest;
   std::vector<objects::PathEntry> paths = entries_.paths;
@@ -217,8 +251,9 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
     moving.name = name_index(path.name);
     instances.push_back(moving);
   }
-  return {std::make_shared<const objects::Scene>(models_, std::move(instances), names_), std::move(interest),
-          true};
+  PlacedScene placed = with_parts(std::move(instances), std::move(interest));
+  placed.moves = true;
+  return placed;
 }
 
 std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes_, {}); }
@@ -226,7 +261,8 @@ std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes
 std::size_t SceneLibrary::bytes() const {
   std::size_t sum = 0;
   for (const auto& m : models_) sum += m->bytes();
-  if (standing_) sum += standing_->instances.capacity() * sizeof(objects::Instance);
+  if (standing_)
+    sum += (standing_->instances.capacity() + standing_->added.capacity()) * sizeof(objects::Instance);
   if (standing_ && standing_->scene) sum += standing_->scene->bytes();
   return sum;
 }

@@ -17,6 +17,7 @@
 #include "objects/scene/place.h"
 #include "objects/scene/scene.h"
 #include "paging/surface/surface.h"
+#include "vpe/app/scene/placed_parts.h"
 #include "vpe/base/file.h"
 #include "vpe/core/interest.h"
 #include "vpe/core/object_track.h"
@@ -25,9 +26,14 @@ namespace vpe::app {
 
 // Holds a scene at one time.
 struct PlacedScene {
-  std::shared_ptr<const objects::Scene> scene;
-  std::vector<core::InterestRegion> interest;  // around objects that ask for finer ground
-  bool moves = false;                          // other times may have objects elsewhere
+  std::shared_ptr<const objects::Scene> scene;  // all but what is cut out of the ground
+  std::vector<core::InterestRegion> interest;   // around objects that ask for finer ground
+  bool moves = false;                           // other times may have objects elsewhere
+  // The same without what is added to the ground, for images that draw the parts of the ground.
+  std::shared_ptr<const objects::Scene> apart;
+  std::shared_ptr<const PlacedParts> parts;  // of the ground; null: none
+  std::shared_ptr<const core::GroundParts>
+      ground_parts;  // the same; the same pointer as long as they are the same
 };
 
 // Returns the name of an instance, or that of its model if it has none; never "".
@@ -70,9 +76,13 @@ class SceneLibrary {
   struct Standing {
     double exaggeration = 1;
     std::vector<objects::Instance> instances;
+    std::vector<objects::Instance> added;  // to the ground
+    std::shared_ptr<const PlacedParts> parts;
+    std::shared_ptr<const core::GroundParts> ground_parts;
     std::vector<core::InterestRegion> interest;
     std::vector<Begin> begins;                    // of SceneFile::objects
     std::shared_ptr<const objects::Scene> scene;  // null where others move
+    std::shared_ptr<const objects::Scene> apart;
   };
 
   void read(const std::string& file);
@@ -81,6 +91,9 @@ class SceneLibrary {
   objects::GroundRadius ground(double exaggeration) const;
   std::uint32_t name_index(const std::string& name);
   void place_standing(double exaggeration);
+  // Returns the scene of instances, and with what is added to the ground.
+  PlacedScene with_parts(std::vector<objects::Instance> instances,
+                         std::vector<core::InterestRegion> interest) const;
   // Moves what a track names, or hides it: an instance by adding its number to `hidden`, a path by taking its points.
   void move(const core::ObjectTrack& track, double time_s, double exaggeration,
             std::vector<objects::PathEntry>& paths, std::vector<objects::Instance>& instances,

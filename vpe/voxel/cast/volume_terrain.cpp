@@ -59,7 +59,8 @@ class PartPixels {
       const bool faces_sun = glm::dot(normal, sun_) > 0;
       out.sun = faces_sun && std::isfinite(rays_.cast(place_m + start_m * normal, sun_)) ? 0.0F : 1.0F;
     }
-    if (out.share < 1 && is_hidden_by_part(place_m + start_m * up)) out.sun = 0, out.sun_share = 1;
+    const glm::dvec3& away = out.share > 0 ? normal : up;
+    if (out.share < 1 && is_hidden_by_part(place_m + start_m * away)) out.sun = 0, out.sun_share = 1;
     return out;
   }
 
@@ -99,7 +100,8 @@ class PartPixels {
   // The ground in a brick hides nothing that the posts do not hide.
   bool is_hidden_by_part(const glm::dvec3& from_m) {
     const double range_m = rays_.cast_bricks(from_m, sun_);
-    if (!std::isfinite(range_m)) return false;
+    // Beside the foot of a part the way up ends in it.
+    if (!std::isfinite(range_m) || !(range_m > 0)) return false;
     const glm::dvec3 place_m = from_m + range_m * sun_;
     const GridVolume* const brick = rays_.brick_at(place_m);
     return brick != nullptr && from_ground_voxels(*brick, place_m) > kGroundWithin_voxels + 0.5;
