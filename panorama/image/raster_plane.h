@@ -1,8 +1,10 @@
 // Files of auxiliary layers, which are registered to a panorama's image: range, place, elevation of each pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 namespace panorama {
@@ -12,8 +14,7 @@ namespace panorama {
 // member.
 //
 // at() opens the file, reads one tile or strip and closes it again, so that no file stays open and calls need
-// no locks. That suits single queries, as below a cursor. To read many pixels, use a reader that keeps the file
-// open.
+// no locks. That suits single queries, as below a cursor. PlaneReader reads many pixels.
 class RasterPlane {
  public:
   // Reads the header. Throws vpe::base::FileError: damaged, another kind, or not of this size.
@@ -24,6 +25,25 @@ class RasterPlane {
 
  private:
   std::filesystem::path path_;
+};
+
+// Reads many values of the first band of such a file, which it keeps open. For one thread.
+class PlaneReader {
+ public:
+  // Reads the header. Keeps decoded tiles or strips of at most about `budget_bytes`, and at least the last one. Throws as
+  // RasterPlane.
+  PlaneReader(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px,
+              std::size_t budget_bytes);
+  ~PlaneReader();
+  PlaneReader(PlaneReader&&) noexcept;
+  PlaneReader& operator=(PlaneReader&&) noexcept;
+
+  // Returns the value at a pixel of the image. Throws vpe::base::FileError.
+  double at(std::int64_t column, std::int64_t row);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace panorama

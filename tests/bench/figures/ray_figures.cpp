@@ -1,5 +1,5 @@
-// Draws how the ray backend works, from its own numbers: docs/pictures/rays-*.svg and
-// sticks-rays.svg.
+// Draws how the ray backend works, from its own numbers: docs/pictures/rays-*.svg,
+// sticks-rays.svg and warp-gaps.svg.
 //
 //   vpe_ray_figures docs/pictures
 //
@@ -31,9 +31,13 @@ struct Figure {
   const char* name;
   std::string (*draw)(const Scene&, const std::string&);
 };
-constexpr Figure kFigures[] = {{"rays-footprint.svg", draw_footprint}, {"rays-column.svg", draw_column},
-                               {"rays-sectors.svg", draw_sectors},     {"rays-hints.svg", draw_hints},
-                               {"rays-discrete.svg", draw_discrete},   {"sticks-rays.svg", draw_sticks}};
+constexpr Figure kFigures[] = {{"rays-footprint.svg", draw_footprint},
+                               {"rays-column.svg", draw_column},
+                               {"rays-sectors.svg", draw_sectors},
+                               {"rays-hints.svg", draw_hints},
+                               {"rays-discrete.svg", draw_discrete},
+                               {"sticks-rays.svg", draw_sticks},
+                               {"warp-gaps.svg", draw_gaps}};
 
 Scene make_scene(const std::string& file) {
   paging::BuildOptions options;

@@ -141,5 +141,6 @@ std::string draw_sectors(const Scene& scene, const std::string& file);
 std::string draw_hints(const Scene& scene, const std::string& file);
 std::string draw_discrete(const Scene& scene, const std::string& file);
 std::string draw_sticks(const Scene& scene, const std::string& file);
+std::string draw_gaps(const Scene& scene, const std::string& file);  // of a scene of its own
 
 }  // namespace bench

@@ -8,9 +8,10 @@ namespace vpe::app {
 
 StereoPanorama::StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads)
     : left_{panorama::describe(files.panorama, files.layout), nullptr},
-      budget_bytes_(budget_bytes / (files.right.empty() ? 1 : 2)),
+      budget_bytes_(budget_bytes / (files.right.empty() && !files.second ? 1 : 2)),
       threads_(threads) {
   if (!files.right.empty()) right_ = Panorama{panorama::describe(files.right, files.layout), nullptr};
+  if (files.second) second_ = std::make_unique<SecondLook>(left_.description, budget_bytes_, *files.second);
 }
 
 core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
@@ -21,6 +22,16 @@ core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<
     if (finish) finish(image);
     return image;
   };
+  if (stereo && second_) {
+    EyePair eyes =
+        second_->draw(view, [&](const core::View& wide) { return draw_eye(left_, false, wide, progress); });
+    filled_share_ = eyes.filled_share;
+    if (finish) {
+      finish(eyes.left);
+      finish(eyes.right);
+    }
+    return core::combine_stereo(eyes.left, eyes.right, *stereo);
+  }
   core::RgbImage left = finished_eye(left_, false);
   if (!stereo) return left;
   const core::RgbImage right = right_ ? finished_eye(*right_, false) : finished_eye(left_, true);

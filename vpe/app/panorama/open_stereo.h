@@ -9,6 +9,7 @@
 
 #include "panorama/image/tiled_image.h"
 #include "panorama/metadata/open_panorama.h"
+#include "vpe/app/panorama/second_look.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 #include "vpe/core/view.h"
@@ -19,6 +20,8 @@ struct PanoramaFiles {
   std::string panorama;                        // of both eyes, or of the left one
   std::string right;                           // empty: the right eye has no file of its own
   std::optional<panorama::PairLayout> layout;  // nullopt: that of the sidecar
+  // Makes the right eye's views of the left one's and its ranges; nullopt: the right eye has an image.
+  std::optional<SecondLookOptions> second = std::nullopt;
 };
 
 // Reports the progress of the copy that a large image may need before the first view: a description, and a
@@ -33,12 +36,16 @@ using CopyProgress = std::function<void(const std::string& what, double fraction
 class StereoPanorama {
  public:
   // Reads descriptions, no pixels. Images take at most budget_bytes of memory together. Smaller: tiles are read
-  // again more often. threads: 0 = all cores. Throws as panorama::describe().
+  // again more often. threads: 0 = all cores. Throws as panorama::describe() and SecondLook.
   StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads);
 
   // Returns the description of the left eye's panorama.
   const panorama::PanoramaDescription& description() const { return left_.description; }
-  bool is_pair() const { return right_ || left_.description.pair != panorama::PairLayout::kNone; }
+  bool is_pair() const { return right_ || second_ || left_.description.pair != panorama::PairLayout::kNone; }
+  // Returns what makes the right eye's views; null if it has an image.
+  const SecondLook* second() const { return second_.get(); }
+  // Returns EyePair::filled_share of the last view with two eyes.
+  double filled_share() const { return filled_share_; }
 
   // Draws a view whose axes are in the panorama's frame: both eyes in the layout, or without stereo the left
   // one. Calls `finish` for each eye's image before the two are combined. Throws as
@@ -58,6 +65,8 @@ class StereoPanorama {
   void open(Panorama& panorama, const CopyProgress& progress) const;
 
   Panorama left_;
+  std::unique_ptr<SecondLook> second_;
+  double filled_share_ = 0;
   std::optional<Panorama> right_;  // nullopt: the right eye is in the left one's file, or missing
   std::size_t budget_bytes_;       // of each image
   int threads_;
