@@ -6,6 +6,7 @@
 
 #include "panorama/viewer/viewer.h"
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -15,13 +16,16 @@
 #include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/open_stereo.h"
 #include "vpe/app/panorama/overlook_places.h"
+#include "vpe/app/panorama/panorama_page.h"
 #include "vpe/app/panorama/panorama_viewer.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
 #include "vpe/core/stereo.h"
 #include "vpe/overlay/overlay.h"
+#include "vpe/warp/carry.h"
 
 namespace vpe::app {
 
@@ -32,6 +36,8 @@ struct OverlookArguments {
   std::string right;
   std::string stereo_layout;
   std::string stereo;
+  StereoMethod method;
+  double eye_base_m = 0;
   std::optional<std::string> view;
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
   std::string size = "1280x720";
@@ -40,6 +46,7 @@ struct OverlookArguments {
   std::vector<std::string> at_pixel;
   double scale = 0;
   bool compass = false;
+  PageArguments page;
 };
 
 struct Pair {
@@ -67,17 +74,33 @@ panorama::Direction parse_direction(const std::string& option, const std::string
 PanoramaFiles files_of(const OverlookArguments& arguments) {
   PanoramaFiles files{arguments.panorama, arguments.right, {}};
   if (!arguments.stereo_layout.empty()) files.layout = panorama::parse_pair_layout(arguments.stereo_layout);
+  if (arguments.method.name == "reproject")
+    files.second = SecondLookOptions{.eye_base_m = arguments.eye_base_m, .gap_px = arguments.method.gap_px};
   return files;
+}
+
+// Refuses options that contradict each other.
+void check_eyes(const OverlookArguments& arguments) {
+  const bool is_carried = arguments.method.name == "reproject";
+  if (is_carried && (!arguments.right.empty() || !arguments.stereo_layout.empty()))
+    throw UsageError(
+        "--stereo-method reproject makes the right eye of the left one's image; leave --right and "
+        "--stereo-layout out");
+  if (!is_carried && arguments.eye_base_m > 0)
+    throw UsageError("--eye-base is for --stereo-method reproject; images of two eyes have their own");
 }
 
 StereoPanorama open_panorama(const OverlookArguments& arguments, const Common& common) {
   // The rest of the memory is for the view.
   StereoPanorama panorama(files_of(arguments), memory_bytes(common) / 4 * 3, common.threads);
+  if (arguments.method.name == "reproject" && panorama.description().pair != panorama::PairLayout::kNone)
+    throw UsageError("--stereo-method reproject: '" + panorama.description().image.string() +
+                     "' is for two eyes already; leave it out");
   if (!arguments.stereo.empty() && !panorama.is_pair()) {
     throw UsageError(
         "--stereo " + arguments.stereo + ": '" + panorama.description().image.string() +
-        "' is for one eye; give the other eye's image with --right, or --stereo-layout if it holds "
-        "both");
+        "' is for one eye; give the other eye's image with --right, --stereo-layout if it holds both, or "
+        "--stereo-method reproject if it has the layer range");
   }
   return panorama;
 }
@@ -141,6 +164,7 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   // Wrong usage and files that cannot be written are reported before any work.
   const Size size = parse_size(arguments.size);
   if (arguments.view) (void)parse_direction("--view", *arguments.view);
+  check_eyes(arguments);
   std::vector<panorama::Direction> directions;
   for (const std::string& text : arguments.direction)
     directions.push_back(parse_direction("--direction", text));
@@ -150,7 +174,9 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   check_outputs({{"-o", arguments.output, FileKind::kImage}}, {arguments.panorama, arguments.right});
   if (arguments.compass && !core::overlays_refused().empty())
     throw UsageError("--compass: " + std::string(core::overlays_refused()));
-  const bool in_window = arguments.output.empty() && directions.empty() && pixels.empty();
+  check_page(arguments.page);
+  const bool in_window =
+      arguments.output.empty() && directions.empty() && pixels.empty() && arguments.page.folder.empty();
   if (in_window) check_window();
 
   StereoPanorama panorama = open_panorama(arguments, common);
@@ -187,7 +213,15 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
     core::write_image(arguments.output, image.pixels, image.width, image.height);
     json["output"] = arguments.output;
     json["view"] = describe_view(viewer, image.width, image.height);
+    if (const SecondLook* second = panorama.second(); second != nullptr && !arguments.stereo.empty()) {
+      json["second_eye"] = {{"eye_base_m", second->eye_base_m()}, {"filled_share", panorama.filled_share()}};
+      if (!common.quiet)
+        std::fprintf(stderr, "vpe: eyes %s apart; %.1f %% of the right eye's pixels are not in the panorama\n",
+                     length_text(second->eye_base_m()).c_str(), 100 * panorama.filled_share());
+    }
   }
+  if (!arguments.page.folder.empty())
+    json["page"] = write_page_of(arguments.page, files_of(arguments), {}, common);
   if (common.json) {
     print_json(json);
     return;
@@ -241,14 +275,39 @@ void add_overlook(CLI::App& program, Common& common) {
                    "Draw both eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
       ->check(CLI::IsMember({"sbs", "ou", "anaglyph"}));
   command
+      ->add_option(
+          "--stereo-method", arguments->method.name,
+          "full: each eye has an image; reproject: make the right eye's view of the left one's and the "
+          "layer range")
+      ->check(CLI::IsMember({"full", "reproject"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--stereo-gap", arguments->method.gap_px,
+          "With --stereo-method reproject: widest gap between pixels that is filled by what lies between "
+          "them, pixels; wider ones are filled by what is behind them")
+      ->check(number_within(0.5, warp::CarryLimits::kMaxGap_px))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--eye-base", arguments->eye_base_m,
+          "With --stereo-method reproject: distance of the eyes, metres (default: a thirtieth of the nearest "
+          "range in the first view)")
+      ->check(number_within(1e-6, 1e6));
+  command
       ->add_option("--scale", arguments->scale, "Size of the window's letters (default: that of the monitor)")
       ->check(number_within(0.5, 4));
   command->add_flag("--compass", arguments->compass,
                     "Draw marks of azimuth along the view's lower edge; a window always has them");
-  add_examples(*command, {{"in a window", "vpe overlook rim.png"},
-                          {"a view to azimuth 119, 5 degrees up, as a file",
-                           "vpe overlook rim.png --view 119,5 --fov 40 -o look.png"},
-                          {"what is in a direction", "vpe overlook rim.png --direction 119,-3 --json"}});
+  add_page_options(*command, arguments->page);
+  add_examples(*command,
+               {{"in a window", "vpe overlook rim.png"},
+                {"a view to azimuth 119, 5 degrees up, as a file",
+                 "vpe overlook rim.png --view 119,5 --fov 40 -o look.png"},
+                {"both eyes, of an image for one with ranges",
+                 "vpe overlook rim.png --view 119,-5 --stereo anaglyph --stereo-method reproject -o both.png"},
+                {"as a web page, in a folder", "vpe overlook rim.png --html rim-page"},
+                {"what is in a direction", "vpe overlook rim.png --direction 119,-3 --json"}});
   command->callback([arguments, &common] { overlook(*arguments, common); });
 }
 

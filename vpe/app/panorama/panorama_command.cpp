@@ -17,6 +17,7 @@
 #include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/panorama/panorama_maker.h"
+#include "vpe/app/panorama/panorama_page.h"
 #include "vpe/app/panorama/panorama_plan.h"
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/app/panorama/panorama_scene.h"
@@ -214,6 +215,15 @@ void resolve_eyes(PanoramaRequest& request, const PanoramaPlan& plan,
   require_eyes_above_ground(request, paging::Surface(planet, kSmallSurfaceBytes), kLeastPanoramaHeight_m);
 }
 
+// Returns the names of the image for its web page.
+std::vector<panorama::PageName> page_names(PanoramaOverlays& overlays) {
+  overlays.prepare();
+  std::vector<panorama::PageName> names;
+  for (const overlay::PanoramaName& name : overlays.names())
+    names.push_back({name.name, {name.azimuth_deg, name.elevation_deg}, name.distance_m});
+  return names;
+}
+
 void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   const auto start = SteadyClock::now();
   PanoramaRequest request = parse_panorama(arguments, common);
@@ -222,6 +232,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   resolve_scene(request);
   check_stereo_panorama(request);
   check_files(request, plan, common.memory_mb);
+  check_page(arguments.page);
 
   const InterruptGuard guard;
   const auto planet = open_planet(request.planet, common);
@@ -268,10 +279,14 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
     remove_strips(request.output);
     times.encoding += elapsed_s(joining);
   }
+  nlohmann::json page;
+  if (!arguments.page.folder.empty())
+    page = write_page_of(arguments.page, {request.output.string(), "", {}}, page_names(overlays), common);
   if (!common.quiet) print_failures(maker.failures());
   if (common.json) {
     nlohmann::json report = report_json(request, plan, maker, times, elapsed_s(start));
     report["sun"] = to_json(sun);
+    if (!page.is_null()) report["page"] = page;
     print_json(report);
   } else if (!common.quiet) {
     print_summary(request, plan, maker.figures().shift_bound_px, elapsed_s(start));
@@ -320,12 +335,15 @@ void add_panorama(CLI::App& program, Common& common) {
   add_render_options(*command, arguments->render);
   add_eye_options(*command, arguments->stereo);
   add_method_options(*command, arguments->stereo.method);
+  add_page_options(*command, arguments->page);
   add_examples(
       *command,
       {{"the full circle from eye height",
         "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 -o rim.png --width 6000"},
        {"the south, finely, with marks of azimuth",
         "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 --from 150 --to 210 --elevation=-10,15 --degrees-per-pixel 0.01 --set overlay.compass=on -o south.tif"},
+       {"with a web page, in a folder",
+        "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 --aux-layers range,lonlat,elevation -o rim.png --html rim-page"},
        {"the same image again", "vpe panorama --from-sidecar rim.json -o same.png"}});
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;

@@ -82,7 +82,7 @@ PanoramaOverlays::PanoramaOverlays(const PanoramaRequest& request, const panoram
   if (!file.empty()) places_ = core::read_gazetteer(file);
 }
 
-overlay::SpriteLayer PanoramaOverlays::lay_out() const {
+overlay::SpriteLayer PanoramaOverlays::lay_out() {
   const core::SettingsValues& values = request_.settings.values();
   overlay::PanoramaScene scene;
   scene.width_px = map_.width_px;
@@ -109,7 +109,8 @@ overlay::SpriteLayer PanoramaOverlays::lay_out() const {
   scene.appearance = values;
   paging::fit_to_planet(scene.appearance, planet_->meta());
   scene.has_imagery = !planet_->image_keys().empty();
-  if (!places_.empty()) scene.names = visible_names(request_, places_, planet_, memory_bytes_, pool_);
+  if (!places_.empty()) names_ = visible_names(request_, places_, planet_, memory_bytes_, pool_);
+  scene.names = names_;
   return overlay::lay_out_panorama(values, scene);
 }
 

@@ -11,6 +11,7 @@
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/gazetteer.h"
+#include "vpe/overlay/panorama_overlay.h"
 #include "vpe/overlay/sprites.h"
 
 namespace vpe::app {
@@ -33,12 +34,15 @@ class PanoramaOverlays {
   // Places all overlays, once. Does nothing if no overlay is set. Throws what paging::Surface throws.
   void prepare();
 
+  // Returns the names that stand in the image, whether or not there was room for them. Call prepare() first.
+  const std::vector<overlay::PanoramaName>& names() const { return names_; }
+
   // Draws over a region of the image. The division into regions changes no pixel. Throws what
   // overlay::SpriteLayer and paging::Surface throw.
   void lay(const overlay::ImageRegion& region);
 
  private:
-  overlay::SpriteLayer lay_out() const;
+  overlay::SpriteLayer lay_out();
 
   const PanoramaRequest& request_;
   const panorama::PanoramaMap& map_;
@@ -46,6 +50,7 @@ class PanoramaOverlays {
   base::ThreadPool& pool_;
   std::size_t memory_bytes_;
   std::vector<core::Place> places_;
+  std::vector<overlay::PanoramaName> names_;
   std::optional<overlay::SpriteLayer> sprites_;
 };
 

@@ -19,6 +19,7 @@
 #include "panorama/planes.h"
 #include "panorama/stereo_pieces.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/panorama/panorama_page.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/core/appearance/settings.h"
@@ -48,6 +49,7 @@ struct PanoramaArguments {
   bool has_yaw = false;     // --yaw is given
   RenderOptions render;
   StereoArguments stereo;
+  PageArguments page;
 };
 
 struct PanoramaRequest {
