@@ -1,4 +1,4 @@
-// Which of the two sides of planes is outside, for point_normals.h.
+// Decides which of the two sides of planes is outside, for point_normals.h.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace objects {
 
-// What is known of the voxels around points.
+// Holds what is known of the voxels around points.
 struct PointSurroundings {
   const VoxelGrid& held;    // voxels that hold points
   const VoxelGrid& filled;  // and those that close gaps or are enclosed

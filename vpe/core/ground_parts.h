@@ -32,7 +32,7 @@ struct GroundPart {
   SolidsAt solids = {};          // any thread may call it
 };
 
-// What is added stays where something is cut: (ground less what is cut) and what is added.
+// Holds all of them. What is added stays where something is cut: (ground less what is cut) and what is added.
 using GroundParts = std::vector<GroundPart>;
 
 }  // namespace vpe::core

@@ -1,4 +1,4 @@
-// What commands tell of models.
+// Prints what commands tell of models.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -1,4 +1,4 @@
-// How the ground in a pixel is lit, where that is finer than the posts tell.
+// Says how the ground in a pixel is lit, where that is finer than the posts tell.
 //
 // Stage of the pipeline (vpe/voxel/ray_renderer.h): cast_smooth() and VolumeTerrain::light() write it, ImagePainter takes it.
 #pragma once

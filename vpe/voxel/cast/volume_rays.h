@@ -53,7 +53,7 @@ class VolumeRays {
   double ground_height_m(const glm::dvec3& up);
 
   const VolumeTiles& seen() const { return seen_; }
-  // What rays found in bricks.
+  // Returns what rays found in bricks.
   const VolumeTile& seen_bricks() const { return seen_bricks_; }
 
  private:
