@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "panorama/viewer/render_view.h"
+#include "panorama/viewer/level_grid.h"
 
 namespace panorama {
 
@@ -19,16 +19,6 @@ class Sampler {
   glm::vec3 mean(const glm::dvec2& at, const glm::dvec2& across, const glm::dvec2& down);
 
  private:
-  struct Level {
-    ImageLevel size;
-    glm::dvec2 scale;   // pixels of this level to one of the image
-    double reduction;   // pixels of the image to one of this level, the larger of both sides
-    std::int64_t turn;  // columns of a full circle; 0 when the image is none
-    std::int64_t left;  // the part that the map describes, both ends included
-    std::int64_t right;
-    std::int64_t top;
-    std::int64_t bottom;
-  };
   struct Slot {
     int level = -1;
     std::int64_t column = 0;
@@ -40,11 +30,9 @@ class Sampler {
   glm::vec3 pixel(int level, std::int64_t x, std::int64_t y);
   glm::vec3 between_pixels(int level, const glm::dvec2& at);
   glm::vec3 between_levels(double footprint_px, const glm::dvec2& at);
-  std::int64_t wrapped(const Level& level, std::int64_t x) const;
 
   const TiledImage& image_;
-  glm::dvec2 origin_px_;
-  std::vector<Level> levels_;
+  std::vector<LevelGrid> levels_;
   std::array<Slot, 16> slots_;
 };
 

@@ -49,9 +49,10 @@ Direction to_direction(const glm::dvec3& vector) {
   return {azimuth_deg, std::atan2(vector.z, std::hypot(vector.x, vector.y)) / kRadiansPerDegree};
 }
 
-vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px) {
+vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px,
+                        double roll_deg) {
   vpe::core::View view;
-  view.camera = {{0, 0, 0}, mars::oriented_axes(kViewerFrame, std::fmod(yaw_deg, 360.0), pitch_deg, 0.0)};
+  view.camera = {{0, 0, 0}, mars::oriented_axes(kViewerFrame, std::fmod(yaw_deg, 360.0), pitch_deg, roll_deg)};
   view.fov_deg = fov_deg;
   view.width = width_px;
   view.height = height_px;
@@ -105,6 +106,10 @@ void Viewer::set_fov(double fov_deg) {
   clamp_pitch();
 }
 
+void Viewer::set_roll(double roll_deg) {
+  if (std::isfinite(roll_deg)) roll_deg_ = std::remainder(roll_deg, 360.0);
+}
+
 void Viewer::zoom(double factor, double x, double y) {
   if (!(factor > 0.0) || !std::isfinite(factor) || !std::isfinite(x) || !std::isfinite(y)) return;
   const Direction under = direction(x, y);
@@ -119,8 +124,12 @@ void Viewer::hold(const Direction& direction, double x, double y) {
   }
   // The ray (u, v, 1) in (right, up, forward) rises by sin p + v cos p = sqrt(1 + v^2) sin(p + atan v).
   const double focal_px = vpe::core::focal_px(view());
-  const double u = (x - 0.5 * size_.x) / focal_px;
-  const double v = (0.5 * size_.y - y) / focal_px;
+  const double right = (x - 0.5 * size_.x) / focal_px;
+  const double up = (0.5 * size_.y - y) / focal_px;
+  // In the axes of the level view.
+  const double roll = roll_deg_ * kRadiansPerDegree;
+  const double u = right * std::cos(roll) + up * std::sin(roll);
+  const double v = up * std::cos(roll) - right * std::sin(roll);
   const double sine =
       std::sin(direction.elevation_deg * kRadiansPerDegree) * std::sqrt((1.0 + u * u + v * v) / (1.0 + v * v));
   const double rise_rad = std::asin(std::clamp(sine, -1.0, 1.0));
@@ -137,7 +146,9 @@ void Viewer::hold(const Direction& direction, double x, double y) {
   look_at(yaw_deg_ + std::remainder(direction.azimuth_deg - aside_deg - yaw_deg_, 360.0), pitch_deg);
 }
 
-vpe::core::View Viewer::view() const { return view_of(yaw_deg_, pitch_deg_, fov_deg_, size_.x, size_.y); }
+vpe::core::View Viewer::view() const {
+  return view_of(yaw_deg_, pitch_deg_, fov_deg_, size_.x, size_.y, roll_deg_);
+}
 
 Direction Viewer::direction(double x, double y) const {
   return to_direction(vpe::core::pixel_ray(view(), x, y));

@@ -1,8 +1,9 @@
-// The state of a panorama viewer: a level perspective view that turns and zooms within the image's limits.
+// The state of a panorama viewer: a perspective view that turns and zooms within the image's limits. It is level unless
+// the head that looks is tilted.
 //
 // Directions are those of the panorama: azimuth clockwise from north, elevation up. Screen positions are in
 // pixels, (0, 0) the upper left corner, pixel centres at +0.5. The screen's columns of the horizon at pitch 0
-// are azimuth = yaw + atan((x - width / 2) / f), f = (height / 2) / tan(fov / 2).
+// are azimuth = yaw + atan((x - width / 2) / f), f = (height / 2) / tan(fov / 2), without roll.
 // Pure: nothing here reads images. One thread at a time changes a Viewer.
 //
 // Typical usage:
@@ -50,6 +51,8 @@ class Viewer {
   // may be viewed straight up or down.
   double pitch_deg() const { return pitch_deg_; }
   double fov_deg() const { return fov_deg_; }  // vertical
+  // Returns the tilt of the head to its right, about the direction of the middle. The limits are those of a level view.
+  double roll_deg() const { return roll_deg_; }
   glm::ivec2 size() const { return size_; }
   const PanoramaMap& map() const { return map_; }
 
@@ -61,10 +64,11 @@ class Viewer {
   void look_at(double yaw_deg, double pitch_deg);
   void turn(double yaw_deg, double pitch_deg) { look_at(yaw_deg_ + yaw_deg, pitch_deg_ + pitch_deg); }
   void set_fov(double fov_deg);
+  void set_roll(double roll_deg);
   // Divides the tangent of half the field of view by a factor > 0. The direction at (x, y) stays there unless a
   // limit of the pitch is reached.
   void zoom(double factor, double x, double y);
-  // Turns, without roll, so that a direction is at (x, y), or as near to it as the limits allow. Use it to drag
+  // Turns, and keeps the roll, so that a direction is at (x, y), or as near to it as the limits allow. Use it to drag
   // the image.
   void hold(const Direction& direction, double x, double y);
 
@@ -85,6 +89,7 @@ class Viewer {
   double yaw_deg_ = 0;
   double pitch_deg_ = 0;
   double fov_deg_ = ViewerLimits::kDefaultFov_deg;
+  double roll_deg_ = 0;
 };
 
 // Convert between directions and unit vectors (east, north, up).
@@ -94,7 +99,8 @@ Direction to_direction(const glm::dvec3& vector);
 // Holds north and up of views whose axes are in the panorama's frame.
 inline constexpr mars::LocalFrame kViewerFrame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-// Returns a level perspective view of a panorama, its axes in the panorama's frame.
-vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px);
+// Returns a perspective view of a panorama, its axes in the panorama's frame; level unless it has a roll.
+vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px,
+                        double roll_deg = 0);
 
 }  // namespace panorama

@@ -154,6 +154,7 @@ void OverlookView::advance(const explore::Controls& controls, const mars::HeadAn
     head_deg_ = head;
     viewer_.look_at(platform_deg_.x + head.x, platform_deg_.y + head.y);
   }
+  viewer_.set_roll(look.roll_deg);
   rotates_ = controls.yaw_right != 0 || controls.pitch_up != 0;
   if (rotates_) {
     const double step_deg = kRotation_deg_s * tangent_of_half(viewer_.fov_deg()) /
@@ -218,6 +219,7 @@ void OverlookView::request_image() {
     ImageRequest first;
     first.number = ++requested_;
     first.stereo = requested_stereo_ = stereo_;
+    first.is_full = false;
     first.draw.view = explore::reduced(wanted, explore::LiveImageOptions().smallest_side);
     maker_->request(std::move(first));
     return;
@@ -235,6 +237,7 @@ void OverlookView::request_image() {
   ImageRequest request;
   request.number = ++requested_;
   request.stereo = stereo_;
+  request.is_full = next->is_full;
   request.draw.view = next->view;
   maker_->request(std::move(request));
 }
@@ -244,7 +247,7 @@ void OverlookView::take_image(double wait_s) {
   if (!drawn) return;
   ++images_;
   is_new_ = true;
-  if (drawn->request.number > 1) live_.record(drawn->seconds * 1e3, true);
+  if (drawn->request.number > 1) live_.record(drawn->seconds * 1e3, drawn->result.settled);
   if (!drawn->error.empty()) {
     show_message(drawn->error, true);
     return;

@@ -8,8 +8,8 @@
 //   view.advance(controls, look, dt_s);
 //   if (view.update(wait_s)) ...           // draw a frame with view.draw()
 //
-// and wait for events if is_at_rest(). The view has two degrees of freedom, yaw and pitch; the roll of devices
-// and heads is ignored. It belongs to the main thread and a Display that outlives it. Images are drawn on a
+// and wait for events if is_at_rest(). The view has two degrees of freedom, yaw and pitch, and the roll of the head; the
+// roll of other devices is ignored. It belongs to the main thread and a Display that outlives it. Images are drawn on a
 // thread of its own, which wakes the display.
 #pragma once
 

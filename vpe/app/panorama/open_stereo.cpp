@@ -6,12 +6,25 @@
 
 namespace vpe::app {
 
+namespace {
+
+// Of the budget, for the textures of each eye that is drawn by OpenGL.
+constexpr std::size_t kTextureShare = 4;
+
+}  // namespace
+
 StereoPanorama::StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads)
-    : left_{panorama::describe(files.panorama, files.layout), nullptr},
+    : left_{panorama::describe(files.panorama, files.layout), nullptr, {}},
       budget_bytes_(budget_bytes / (files.right.empty() && !files.second ? 1 : 2)),
       threads_(threads) {
-  if (!files.right.empty()) right_ = Panorama{panorama::describe(files.right, files.layout), nullptr};
+  if (!files.right.empty()) right_ = Panorama{panorama::describe(files.right, files.layout), nullptr, {}};
   if (files.second) second_ = std::make_unique<SecondLook>(left_.description, budget_bytes_, *files.second);
+}
+
+void StereoPanorama::set_context(std::shared_ptr<gl::Context> context) {
+  left_.renderers = {};
+  if (right_) right_->renderers = {};
+  context_ = std::move(context);
 }
 
 core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
@@ -22,6 +35,7 @@ core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<
     if (finish) finish(image);
     return image;
   };
+  is_complete_ = true;
   if (stereo && second_) {
     EyePair eyes =
         second_->draw(view, [&](const core::View& wide) { return draw_eye(left_, false, wide, progress); });
@@ -48,13 +62,26 @@ core::RgbImage StereoPanorama::draw_eye(Panorama& panorama, bool is_second, cons
     options.origin.x_px = description.map.width_px;
   if (is_second && description.pair == panorama::PairLayout::kOverUnder)
     options.origin.y_px = description.map.height_px;
-  return panorama::render_view(*panorama.tiled_image, description.map, view, options);
+  if (context_ == nullptr) return panorama::render_view(*panorama.tiled_image, description.map, view, options);
+  std::unique_ptr<overlook::OverlookRenderer>& renderer = panorama.renderers[is_second ? 1 : 0];
+  if (renderer == nullptr) {
+    overlook::OverlookOptions by_graphics;
+    by_graphics.origin = options.origin;
+    by_graphics.outside = options.outside;
+    by_graphics.threads = threads_;
+    by_graphics.budget_bytes = budget_bytes_ / kTextureShare;
+    renderer = std::make_unique<overlook::OverlookRenderer>(context_, *panorama.tiled_image, description.map,
+                                                            by_graphics);
+  }
+  overlook::OverlookRenderer::Drawn drawn = renderer->draw(view, most_new_);
+  is_complete_ = is_complete_ && drawn.is_complete;
+  return std::move(drawn.image);
 }
 
 void StereoPanorama::open(Panorama& panorama, const CopyProgress& progress) const {
   const panorama::PanoramaDescription& description = panorama.description;
   panorama::TiledImageOptions options;
-  options.budget_bytes = budget_bytes_;
+  options.budget_bytes = context_ == nullptr ? budget_bytes_ : budget_bytes_ / 2;
   options.cache_folder = [] {
     const std::filesystem::path folder = cache_folder() / "pictures";
     make_folder(folder);

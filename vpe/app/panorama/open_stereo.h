@@ -1,8 +1,10 @@
 // The pixels of a panorama for one eye or two, opened when a view first needs them.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +15,7 @@
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 #include "vpe/core/view.h"
+#include "vpe/overlook/overlook_renderer.h"
 
 namespace vpe::app {
 
@@ -39,6 +42,13 @@ class StereoPanorama {
   // again more often. threads: 0 = all cores. Throws as panorama::describe() and SecondLook.
   StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads);
 
+  // Draws views by OpenGL from now on, in the context's thread; null: on the CPU.
+  void set_context(std::shared_ptr<gl::Context> context);
+  // Lets a view by OpenGL read at most so many tiles of texture that it does not have yet.
+  void limit_reads(int most_new) { most_new_ = most_new; }
+  // Returns false if coarser tiles stood in for some in the last view.
+  bool is_complete() const { return is_complete_; }
+
   // Returns the description of the left eye's panorama.
   const panorama::PanoramaDescription& description() const { return left_.description; }
   bool is_pair() const { return right_ || second_ || left_.description.pair != panorama::PairLayout::kNone; }
@@ -57,7 +67,8 @@ class StereoPanorama {
  private:
   struct Panorama {
     panorama::PanoramaDescription description;
-    std::unique_ptr<panorama::TiledImage> tiled_image;  // null until it is needed
+    std::unique_ptr<panorama::TiledImage> tiled_image;                     // null until it is needed
+    std::array<std::unique_ptr<overlook::OverlookRenderer>, 2> renderers;  // of both eyes, once needed
   };
 
   core::RgbImage draw_eye(Panorama& panorama, bool is_second, const core::View& view,
@@ -70,6 +81,9 @@ class StereoPanorama {
   std::optional<Panorama> right_;  // nullopt: the right eye is in the left one's file, or missing
   std::size_t budget_bytes_;       // of each image
   int threads_;
+  std::shared_ptr<gl::Context> context_;
+  int most_new_ = std::numeric_limits<int>::max();
+  bool is_complete_ = true;
 };
 
 }  // namespace vpe::app

@@ -46,6 +46,8 @@ struct OverlookArguments {
   std::vector<std::string> at_pixel;
   double scale = 0;
   bool compass = false;
+  std::string graphics = "auto";
+  double roll_deg = 0;
   PageArguments page;
 };
 
@@ -116,6 +118,7 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
                  shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
                  panorama::ViewerLimits::kMaxMagnification);
   }
+  viewer.set_roll(arguments.roll_deg);
   if (!arguments.view) return viewer;
   const panorama::Direction wanted = parse_direction("--view", *arguments.view);
   viewer.look_at(wanted.azimuth_deg, wanted.elevation_deg);
@@ -143,6 +146,7 @@ core::RgbImage draw_view(StereoPanorama& panorama, const core::View& view, const
     InterruptGuard::check();
     progress.show(what, fraction);
   };
+  if (arguments.graphics == "on") panorama.set_context(gl::Context::create());
   const overlay::Layer layer = arguments.compass ? compass_of(view) : overlay::Layer();
   const auto finish = [&layer](core::RgbImage& image) { overlay::composite(layer, image.pixels); };
   core::RgbImage image = panorama.draw(view, core::parse_stereo(arguments.stereo), copying, finish);
@@ -153,6 +157,7 @@ core::RgbImage draw_view(StereoPanorama& panorama, const core::View& view, const
 nlohmann::json describe_view(const panorama::Viewer& viewer, int width, int height) {
   return {{"yaw_deg", viewer.yaw_deg()},
           {"pitch_deg", viewer.pitch_deg()},
+          {"roll_deg", viewer.roll_deg()},
           {"fov_deg", viewer.fov_deg()},
           {"width", width},
           {"height", height}};
@@ -200,9 +205,13 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   for (const panorama::ProbeResult& place : places) json["places"].push_back(to_json(place));
 
   if (in_window) {
-    PanoramaViewerRequest request{
-        files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
-        arguments.scale};
+    PanoramaViewerRequest request{files_of(arguments),
+                                  {},
+                                  arguments.fov_deg,
+                                  core::parse_stereo(arguments.stereo),
+                                  size,
+                                  arguments.graphics == "off",
+                                  arguments.scale};
     if (arguments.view) request.direction = parse_direction("--view", *arguments.view);
     const panorama::Viewer viewer = view_panorama(request, common);
     json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);
@@ -244,6 +253,18 @@ void add_overlook(CLI::App& program, Common& common) {
       "YAW,PITCH: direction of the view, degrees clockwise from north and up (default: the image's middle)");
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(Limits::kMinFov_deg, Limits::kMaxFov_deg))
+      ->capture_default_str();
+  command
+      ->add_option("--roll", arguments->roll_deg,
+                   "Tilt of the view written with -o to its right, degrees; in a window the head's counts")
+      ->check(number_within(-180, 180))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--graphics", arguments->graphics,
+          "Draw views by OpenGL (on) or exactly, on the CPU (off) (default: auto, by OpenGL in a window if "
+          "this machine can, exactly with -o)")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str();
   command
       ->add_option("--size", arguments->size, "WIDTHxHEIGHT of the view of one eye, or of the window, pixels")

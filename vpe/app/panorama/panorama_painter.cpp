@@ -1,5 +1,6 @@
 #include "vpe/app/panorama/panorama_painter.h"
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -11,11 +12,21 @@ namespace {
 
 // Smaller steps of a progress bar cannot be seen.
 constexpr double kShownStep = 0.005;
+// Tiles of texture that an image may wait for while the view moves: a few milliseconds.
+constexpr int kReadsWhileMoving = 8;
 
 }  // namespace
 
-PanoramaPainter::PanoramaPainter(StereoPanorama panorama, std::shared_ptr<window::CopyingState> copying)
-    : panorama_(std::move(panorama)), copying_(std::move(copying)) {}
+PanoramaPainter::PanoramaPainter(StereoPanorama panorama, std::shared_ptr<window::CopyingState> copying,
+                                 OverlookGraphics graphics)
+    : panorama_(std::move(panorama)), copying_(std::move(copying)) {
+  if (graphics == OverlookGraphics::kOff) return;
+  try {
+    panorama_.set_context(gl::Context::create());
+  } catch (const gl::ContextError&) {
+    if (graphics == OverlookGraphics::kOn) throw;
+  }
+}
 
 window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& request) {
   const auto copied = [this](const std::string&, double fraction) {
@@ -29,24 +40,26 @@ window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& request) {
   if (!failure_.empty()) throw std::runtime_error(failure_);
   window::DrawnImage drawn;
   try {
+    panorama_.limit_reads(request.is_full ? std::numeric_limits<int>::max() : kReadsWhileMoving);
     drawn.image = panorama_.draw(request.draw.view, request.stereo, copied);
   } catch (const std::exception& e) {
     const bool copied_some = copying_->fraction.exchange(-1) >= 0;
     if (copied_some && !copying_->stop) failure_ = e.what();
     throw;
   }
-  drawn.result.settled = true;
+  drawn.result.settled = panorama_.is_complete();
   copying_->fraction = -1;
   return drawn;
 }
 
-window::OverlookSetup overlook_setup(const PanoramaFiles& files, std::size_t budget_bytes, int threads) {
+window::OverlookSetup overlook_setup(const PanoramaFiles& files, std::size_t budget_bytes, int threads,
+                                     OverlookGraphics graphics) {
   const StereoPanorama panorama(files, budget_bytes, threads);
   window::OverlookSetup setup;
   setup.panorama = panorama.description();
   setup.is_pair = panorama.is_pair();
-  setup.make_painter = [files, budget_bytes, threads, copying = setup.copying] {
-    return std::make_unique<PanoramaPainter>(StereoPanorama(files, budget_bytes, threads), copying);
+  setup.make_painter = [files, budget_bytes, threads, graphics, copying = setup.copying] {
+    return std::make_unique<PanoramaPainter>(StereoPanorama(files, budget_bytes, threads), copying, graphics);
   };
   return setup;
 }

@@ -35,7 +35,8 @@ panorama::Viewer view_panorama(const PanoramaViewerRequest& request, const Commo
   window::OverlookWindowSetup setup;
   setup.preferences = explore::read_preferences(explore::explore_files().preferences);
   // The rest of the memory is for views and the window.
-  setup.view = overlook_setup(request.files, memory_bytes(common) / 4 * 3, common.threads);
+  setup.view = overlook_setup(request.files, memory_bytes(common) / 4 * 3, common.threads,
+                              request.is_exact ? OverlookGraphics::kOff : OverlookGraphics::kAuto);
   setup.view.look = request.direction;
   setup.view.fov_deg = request.fov_deg;
   setup.view.stereo = request.stereo;

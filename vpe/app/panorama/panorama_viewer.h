@@ -16,8 +16,9 @@ struct PanoramaViewerRequest {
   std::optional<panorama::Direction> direction;  // of the first view; nullopt: the middle of the image
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;  // vertical
   std::optional<core::StereoLayout> stereo;
-  Size size;         // of the window
-  double scale = 0;  // of letters; 0: that of the preferences, else of the monitor
+  Size size;              // of the window
+  bool is_exact = false;  // drawn on the CPU
+  double scale = 0;       // of letters; 0: that of the preferences, else of the monitor
 };
 
 // Throws std::runtime_error that says what to do instead if no window can be opened.
