@@ -14,8 +14,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes datagram(double yaw, double pitch, double roll) {
-  const std::array<double, 6> numbers{1, 2, 3, yaw, pitch, roll};
+Bytes datagram(double yaw, double pitch, double roll, double x_cm = 1, double y_cm = 2, double z_cm = 3) {
+  const std::array<double, 6> numbers{x_cm, y_cm, z_cm, yaw, pitch, roll};
   Bytes bytes;
   for (const double number : numbers) {
     std::uint64_t bits = 0;
@@ -160,6 +160,48 @@ TEST(HeadTracker, RecentresWhereTheHeadIs) {
   expect_look(tracker.look(2), 0, 0, 0, 1e-3);
   hold(tracker, datagram(35, 20, -20), 2, 3);
   expect_look(tracker.look(3), 5, 0, -10, 1e-3);
+}
+
+void expect_position(const HeadPlace& place, double x_m, double y_m, double z_m, double within = 1e-6) {
+  EXPECT_NEAR(place.position_m.x, x_m, within);
+  EXPECT_NEAR(place.position_m.y, y_m, within);
+  EXPECT_NEAR(place.position_m.z, z_m, within);
+}
+
+TEST(HeadTracker, FollowsThePositionInMetres) {
+  HeadTracker tracker({.invert_yaw = true, .scale = 3});  // of angles alone
+  expect_position(tracker.place(0), 0, 0, 0, 0);
+  hold(tracker, datagram(0, 0, 0, 10, -20, 60), 0, 1);
+  expect_position(tracker.place(1), 0.1, -0.2, 0.6);
+  EXPECT_FALSE(tracker.is_moving(1));
+  // 63 % of a step after smoothing_s.
+  tracker.receive(datagram(0, 0, 0, 20, -20, 60), 1);
+  EXPECT_TRUE(tracker.is_moving(1.01));
+  EXPECT_NEAR(tracker.place(1 + HeadTrackerOptions{}.smoothing_s).position_m.x, 0.1 + 0.1 * (1 - std::exp(-1)),
+              1e-6);
+  expect_look(tracker.look(1.02), 0, 0, 0, 0);
+}
+
+TEST(HeadTracker, ThePositionRestsAfterTheTimeOutAndIsRecentred) {
+  HeadTracker tracker;
+  hold(tracker, datagram(0, 0, 0, 10, -20, 60), 0, 1);
+  expect_position(tracker.place(1 + HeadTracker::kTimeout_s), 0.1, -0.2, 0.6);
+  expect_position(tracker.place(1 + HeadTracker::kTimeout_s + HeadTracker::kEase_s / 2), 0.05, -0.1, 0.3);
+  expect_position(tracker.place(3), 0, 0, 0, 0);
+  tracker.receive(datagram(0, 0, 0, 10, -20, 60), 3);
+  expect_position(tracker.place(3), 0, 0, 0, 1e-12);
+  hold(tracker, datagram(0, 0, 0, 10, -20, 60), 3, 4);
+  tracker.recentre(4);
+  expect_position(tracker.place(4), 0.1, -0.2, 0.6);
+  hold(tracker, datagram(0, 0, 0, 10, 0, 60), 4, 5);
+  expect_position(tracker.place(5), 0, 0.2, 0);
+}
+
+TEST(HeadTracker, PositionsStayInARoom) {
+  HeadTracker tracker;
+  hold(tracker, datagram(10, 0, 0, 1e300, -1e6, 5), 0, 1);
+  expect_position(tracker.place(1), 20, -20, 0.05);
+  EXPECT_NEAR(tracker.look(1).yaw_deg, 10, 1e-3);
 }
 
 TEST(HeadTracker, TimesThatRunBackwardsAreTheLastOne) {

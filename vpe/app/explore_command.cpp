@@ -17,6 +17,7 @@
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/screens/placed_screen.h"
 #ifdef VPE_HAS_WINDOW
 #include "mars/embedded/data_files.h"
 #include "vpe/app/cli/output.h"
@@ -33,6 +34,7 @@
 #include "vpe/explore/drawing/project.h"
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/files/preferences.h"
+#include "vpe/explore/screens/screens_file.h"
 #include "vpe/gl/context.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/panels/overlay_bar.h"
@@ -54,6 +56,8 @@ struct ExploreArguments {
   std::string flight;
   std::string hotspots;
   std::string reliefs;
+  std::string screens;
+  double head_scale = 0;  // 0: that of the file
   bool print_settings = false;
   bool restores_overlays = true;  // those of the last session
   bool names_backend = false;     // else that of the last session
@@ -179,6 +183,10 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.preferences_file = vpe::explore::explore_files().preferences;
   setup.state = vpe::explore::explore_files().session.parent_path();
   if (!arguments.reliefs.empty()) (void)relief::read_relief_file(arguments.reliefs);
+  if (!arguments.screens.empty()) {
+    setup.screens = vpe::explore::read_screens_file(arguments.screens);
+    if (arguments.head_scale > 0) setup.screens->scale = arguments.head_scale;
+  }
   if (!arguments.hotspots.empty()) {
     const vpe::explore::ParsedHotspots parsed = vpe::explore::load_hotspots(arguments.hotspots);
     std::string wrong;
@@ -248,6 +256,12 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   };
   setup.recent = lines_of(last.recent);
   return setup;
+}
+
+// Screens and the view of the session share the memory.
+Common common_of(Common common, const ExploreArguments& arguments) {
+  if (!arguments.screens.empty()) common.memory_mb /= 2;
+  return common;
 }
 
 window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> planet, const Common& common,
@@ -320,9 +334,10 @@ void explore(const ExploreArguments& given, const Common& common) {
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
     is_first = false;
-    static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common, arguments.stereo);
+    const Common shared = common_of(common, given);
+    static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, shared, arguments.stereo);
     if (std::exchange(is_coarse, false)) {
-      setup.make_finer = [common, stereo = arguments.stereo](
+      setup.make_finer = [common = shared, stereo = arguments.stereo](
                              const std::stop_token& stop,
                              const window::TellProgress& tell) -> std::optional<window::ShownPlanet> {
         auto complete = build_embedded_planet(common, stop, tell);
@@ -369,6 +384,8 @@ void explore(const ExploreArguments& given, const Common& common) {
     if (const std::filesystem::path next = shown.next_project(); !next.empty()) {
       here = ExploreArguments{};
       here.planet = next.string();
+      here.screens = given.screens;
+      here.head_scale = given.head_scale;
       here.print_settings = false;
       settings.reset();
       project = open_project(here);
@@ -411,6 +428,16 @@ void add_explore(CLI::App& program, Common& common) {
   command->add_option(
       "--reliefs", arguments->reliefs,
       "File of reliefs, *.relief.toml, that change the ground of the view; edited in the panel Ground");
+  command->add_option(
+      "--screens", arguments->screens,
+      "File of screens, *.screens.toml: each gets a window that shows the world through it, for the head "
+      "that the head tracker follows");
+  command
+      ->add_option(
+          "--head-scale", arguments->head_scale,
+          "Metres of the world for a metre of the head, with --screens: 1 for a walker, 10000 on a table "
+          "(default: that of the file)")
+      ->check(number_within(vpe::explore::ScreenLimits::kLeastScale, vpe::explore::ScreenLimits::kMostScale));
   command->add_option("--hotspots", arguments->hotspots, "File of hotspots: places with a panorama to open");
   command->add_option(
       "--log", arguments->log,
@@ -426,10 +453,14 @@ void add_explore(CLI::App& program, Common& common) {
                 {"try a crater and a dam on the ground, and save them",
                  "vpe explore mars.vpe --reliefs works.relief.toml"},
                 {"continue a project that Ctrl+S has saved in the window", "vpe explore work.vpeproj"},
+                {"the ground on a table, for a head that a webcam tracks",
+                 "vpe explore mars.vpe --screens table.screens.toml"},
                 {"record the session as a flight", "vpe explore mars.vpe --log session.flight"}});
   command->callback([arguments, command, &common] {
     arguments->names_backend = command->count("--backend") > 0;
     arguments->names_fov = command->count("--fov") > 0;
+    if (arguments->head_scale > 0 && arguments->screens.empty())
+      throw UsageError("--head-scale is for --screens FILE: without screens the head's place moves nothing");
     explore(*arguments, common);
   });
 }

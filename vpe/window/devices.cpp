@@ -186,7 +186,8 @@ DeviceReading Devices::read(double time_s, bool typing, explore::MotionMode mode
   reading.controls.speed *= preferences_.fly_speed;
   if (receiver_ != nullptr)
     receiver_->poll([&](std::span<const std::uint8_t> bytes) { tracker_.receive(bytes, time_s); });
-  reading.look = tracker_.look(time_s);
+  reading.head = tracker_.place(time_s);
+  reading.look = reading.head.look;
   return reading;
 }
 

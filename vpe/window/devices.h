@@ -31,6 +31,7 @@ struct DeviceSources {
 struct DeviceReading {
   explore::Controls controls;
   mars::HeadAngles look;
+  explore::HeadPlace head;  // `look` again, and where the head is
   std::vector<explore::Action> actions;
 };
 

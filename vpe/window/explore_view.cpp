@@ -35,14 +35,8 @@ core::View sized(core::View view, const core::RgbImage& image) {
 
 }  // namespace
 
-void ExploreWindow::request_image() {
-  const explore::DrawChoice chosen =
-      chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m, state_.convergence_m},
-                      session_.follows_flight() ? session_.player() : nullptr);
-  const glm::ivec2 size = image_layout().eye_size();
-  session_.resize(size.x, size.y);
-  if (!maker_->is_idle()) return;
-  live_.set_budget_ms(session_.settings().values().lod_frame_ms);
+// Returns all that images depend on besides camera and settings.
+std::string ExploreWindow::image_state(const explore::DrawChoice& chosen) {
   const std::string scene = objects_.shown_file(session_);
   // What stands in a scene depends on the time.
   const std::string objects = scene.empty() ? ""
@@ -54,30 +48,54 @@ void ExploreWindow::request_image() {
     for (const std::string& line : scripts::lines_of(followed->ground()->at(objects_.time_s())))
       ground += "\n" + line;
   }
-  const auto reliefs = reliefs_.reliefs();
-  if (reliefs) ground += "\n" + std::to_string(reliefs_.editor().revision());
-  const std::string state =
-      std::string(core::to_string(chosen.drawn_by)) + (chosen.stereo ? core::to_string(*chosen.stereo) : "") +
-      base::format_number(chosen.eye_base_m) + " " + base::format_number(chosen.convergence_m) + objects +
-      ground + (swipes() ? " swipe" : "");
+  if (reliefs_.reliefs()) ground += "\n" + std::to_string(reliefs_.editor().revision());
+  return std::string(core::to_string(chosen.drawn_by)) +
+         (chosen.stereo ? core::to_string(*chosen.stereo) : "") + base::format_number(chosen.eye_base_m) + " " +
+         base::format_number(chosen.convergence_m) + objects + ground + (swipes() ? " swipe" : "");
+}
+
+// Returns a request for an image of the session, by the backend that was chosen last.
+ImageRequest ExploreWindow::request_of(const core::View& view, const explore::DrawChoice& chosen) {
+  ImageRequest request;
+  request.draw.view = view;
+  request.draw.settings = session_.settings().values();
+  request.draw.settings.scene = objects_.shown_file(session_);
+  request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
+  request.draw.interest = session_.all_interest();
+  request.draw.paging.wait = false;
+  request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
+  request.backend = state_.backend;
+  request.flight_time_s = objects_.time_s();
+  if (const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
+      flight != nullptr) {
+    request.draw.tracks = flight->tracks();
+    request.ground = flight->ground();
+  }
+  request.reliefs = reliefs_.reliefs();
+  return request;
+}
+
+void ExploreWindow::request_image() {
+  const explore::DrawChoice chosen =
+      chooser_.update({state_.drawn_by, state_.stereo, state_.eye_base_m, state_.convergence_m},
+                      session_.follows_flight() ? session_.player() : nullptr);
+  const glm::ivec2 size = image_layout().eye_size();
+  session_.resize(size.x, size.y);
+  if (!maker_->is_idle()) return;
+  live_.set_budget_ms(session_.settings().values().lod_frame_ms);
+  const std::string state = image_state(chosen);
   const bool changed = session_.changes() != shown_changes_ || state != shown_state_;
   const auto next = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!next) return;
   shown_changes_ = session_.changes();
   shown_state_ = state;
-  ImageRequest request;
+  ImageRequest request = request_of(next->view, chosen);
   request.number = ++requested_;
   request.stereo = chosen.stereo;
   request.eye_base_m = eye_base_m();
   request.convergence_m = chosen.convergence_m;
-  request.draw.view = next->view;
-  request.draw.settings = session_.settings().values();
-  request.draw.settings.scene = scene;
-  request.draw.sun = setup_.sun(session_.settings().values(), session_.pose());
-  request.draw.interest = session_.all_interest();
   request.draw.coarsening = next->multiplier;
   request.draw.keeps_levels = true;
-  request.draw.paging.wait = false;
   // In red-cyan the images of both eyes are one.
   request.draw.want_rough_range =
       setup_.preferences.warp != explore::Warp::kOff && chosen.stereo != core::StereoLayout::kAnaglyph;
@@ -86,7 +104,6 @@ void ExploreWindow::request_image() {
       setup_.preferences.warp == explore::Warp::kCarry && !chosen.stereo && !request.with_earlier;
   const double soon_s = std::clamp(2 * (drawn_ ? drawn_->seconds : 0), kSoonest_s, kLatest_s);
   const std::vector<core::View> soon = foreseen_views(next->view, soon_s, request.draw.paging.upcoming);
-  request.is_auto = chosen.drawn_by == core::DrawnBy::kAuto;
   request.backend = state_.backend =
       core::backend_for(chosen.drawn_by, {setup_.has_gpu, !setup_.suits_rays || setup_.suits_rays(request.draw),
                                           session_.pose().alt_m / session_.ground().radius_m, state_.backend});
@@ -107,12 +124,6 @@ void ExploreWindow::request_image() {
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;
   request.draw.settings.ray_ratio *= next->side;
-  request.flight_time_s = objects_.time_s();
-  if (followed != nullptr) {
-    request.draw.tracks = followed->tracks();
-    request.ground = followed->ground();
-  }
-  request.reliefs = reliefs;
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
   maker_->request(std::move(request));

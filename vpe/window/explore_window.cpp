@@ -86,6 +86,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
     reliefs_.open(setup_.reliefs_file);
     if (const ReliefsActions actions = reliefs_.take_actions(); actions.message_is_error) add(actions.message);
   }
+  open_screens();
   const std::vector<std::filesystem::path> abandoned = backup_.abandoned();
   flight_.offer(abandoned);
   if (!errors.empty())
@@ -113,9 +114,10 @@ void ExploreWindow::run() {
 
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
-  return maker_->is_idle() && maps_rest() && measure_.is_at_rest() && drawing_.is_at_rest() &&
-         objects_.is_at_rest() && !measures_other_ground() && !session_.is_going() && !session_.is_moving() &&
-         frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
+  return maker_->is_idle() && (screens_ == nullptr || screens_->is_at_rest()) && maps_rest() &&
+         measure_.is_at_rest() && drawing_.is_at_rest() && objects_.is_at_rest() && !measures_other_ground() &&
+         !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
+         live_.state() == lod::RefinementState::kWaiting;
 }
 
 bool ExploreWindow::maps_rest() const {
@@ -222,6 +224,7 @@ bool ExploreWindow::step(double wait_s) {
   // The next image is drawn while the last one is shown.
   const bool is_new = take_image();
   request_image();
+  update_screens(input.head);
   measure_on_ground();
   measure_.set_scene(sight_scene());
   if (!maps_rest() || !measure_.is_at_rest() || !drawing_.is_at_rest() || objects_.is_moving())
@@ -260,6 +263,7 @@ void ExploreWindow::replace_planet(ShownPlanet next) {
   reliefs_.set_surface(setup_.surface);
   measured_ = setup_.surface;
   maker_ = std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); });
+  if (screens_ != nullptr) screens_->set_painter(screen_painter());
   show_message("the planet is complete");
 }
 

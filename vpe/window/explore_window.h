@@ -43,6 +43,7 @@
 #include "vpe/window/panels/status_line.h"
 #include "vpe/window/panels/welcome.h"
 #include "vpe/window/reliefs/reliefs_panel.h"
+#include "vpe/window/screens/screen_windows.h"
 #include "vpe/window/session_recorder.h"
 #include "vpe/window/swipe_line.h"
 #include "vpe/window/ui/display.h"
@@ -109,6 +110,9 @@ struct ExploreSetup : ShownPlanet {
   explore::ModelBall model_ball;  // of objects that are edited; called on a thread; empty: they count as 1 m
   // Returns a command that draws the present view, to be copied. Empty: there is none.
   std::function<std::string(const explore::Session&)> command_line;
+  // Screens that have windows of their own, and what draws their images; without a painter make_painter does.
+  std::optional<explore::ScreenSet> screens;
+  MakePainter make_screen_painter;
   int threads = 0;
 };
 
@@ -212,6 +216,8 @@ class ExploreWindow {
   bool keys_are_in_panels() const { return panel_focus_.is_on(); }
   bool is_recording() const { return recorder_.is_recording(); }
   const Welcome& welcome() const { return welcome_; }
+  // Returns the windows of screens, or null.
+  ScreenWindows* screens() { return screens_.get(); }
   // Performs an action as its key would. Returns what is wrong, or "".
   std::string act(const explore::Action& action);
 
@@ -275,6 +281,8 @@ class ExploreWindow {
   std::optional<mars::LonLat> pointed_place() const;
   bool handle_panel_keys(const Event& event);
   void request_image();
+  std::string image_state(const explore::DrawChoice& chosen);
+  ImageRequest request_of(const core::View& view, const explore::DrawChoice& chosen);
   explore::SightScene sight_scene();
   std::vector<core::View> foreseen_views(const core::View& shown, double soon_s,
                                          std::vector<core::View>& later);
@@ -290,6 +298,10 @@ class ExploreWindow {
   void measure_on_ground();
   bool measures_other_ground() const;
   void keep_reliefs();
+  // explore_screens.cpp:
+  void open_screens();
+  MakePainter screen_painter() const;
+  void update_screens(const explore::HeadPlace& head);
   void show_message(std::string text, bool is_error = false);
   void clear_message();
   void save_image();
@@ -398,6 +410,8 @@ class ExploreWindow {
   std::int64_t frames_ = 0;
   std::int64_t images_ = 0;
   core::RgbImage* capture_ = nullptr;
+  std::unique_ptr<ScreenWindows> screens_;  // null: there are none
+  std::string screens_error_;               // that was told last
   std::unique_ptr<ImageMaker> maker_;  // last: its thread uses the painter, which may use the members above
 };
 

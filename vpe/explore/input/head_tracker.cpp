@@ -9,7 +9,10 @@ namespace vpe::explore {
 namespace {
 
 constexpr std::size_t kPitch = 1;
+constexpr std::size_t kAngles = 3;  // yaw, pitch, roll; after them the position
 constexpr double kStill_deg = 1e-3;
+constexpr double kStill_m = 1e-5;
+constexpr double kMetresPerCentimetre = 0.01;
 
 double read_double(std::span<const std::uint8_t> bytes) {
   std::uint64_t bits = 0;
@@ -19,9 +22,11 @@ double read_double(std::span<const std::uint8_t> bytes) {
 
 double normalized(double angle_deg) { return std::remainder(angle_deg, 360.0); }
 
-// Yaw and roll are periodic; pitch is not.
-double difference(std::size_t angle, double to, double from) {
-  return angle == kPitch ? to - from : normalized(to - from);
+// Yaw and roll are periodic; pitch and the position are not.
+bool is_periodic(std::size_t part) { return part < kAngles && part != kPitch; }
+
+double difference(std::size_t part, double to, double from) {
+  return is_periodic(part) ? normalized(to - from) : to - from;
 }
 
 // Falls smoothly from 1 to 0, with zero slope at both ends.
@@ -32,6 +37,10 @@ double fading(double share) {
 
 double within(double value, double low, double high, double otherwise) {
   return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
+}
+
+double head_m(double cm) {
+  return kMetresPerCentimetre * std::clamp(cm, -HeadDatagram::kMaxPosition_cm, HeadDatagram::kMaxPosition_cm);
 }
 
 HeadTrackerOptions checked(HeadTrackerOptions options) {
@@ -60,44 +69,46 @@ double HeadTracker::not_before(double time_s) const { return time_s > now_s_ ? t
 
 // Clamps scaled angles to 180 degrees, where left and right meet, so that the look does not jump when the head
 // rotates farther.
-HeadTracker::Angles HeadTracker::target() const {
+HeadTracker::Motion HeadTracker::target() const {
   const std::array<bool, 3> inverted{options_.invert_yaw, options_.invert_pitch, options_.invert_roll};
-  Angles all{};
-  for (std::size_t n = 0; n < all.size(); ++n) {
+  Motion all{};
+  for (std::size_t n = 0; n < kAngles; ++n) {
     const double limit = n == kPitch ? 90.0 : 180.0;
     const double rotation = normalized(raw_[n] - centre_[n]) * (inverted[n] ? -1.0 : 1.0);
     all[n] = std::clamp(options_.scale * rotation, -limit, limit);
   }
+  for (std::size_t n = kAngles; n < all.size(); ++n) all[n] = raw_[n] - centre_[n];
   return all;
 }
 
-HeadTracker::Angles HeadTracker::followed(double time_s) const {
+HeadTracker::Motion HeadTracker::followed(double time_s) const {
   const double lag = options_.smoothing_s > 0 ? std::exp(-(time_s - *last_s_) / options_.smoothing_s) : 0.0;
-  Angles all{};
+  Motion all{};
   for (std::size_t n = 0; n < all.size(); ++n) all[n] = to_[n] - difference(n, to_[n], from_[n]) * lag;
   return all;
 }
 
 // Adds the fading rest of an earlier easing to the followed look. After the time-out the last look fades.
-HeadTracker::Angles HeadTracker::angles(double time_s) const {
-  Angles all{};
+HeadTracker::Motion HeadTracker::motion(double time_s) const {
+  Motion all{};
   if (!last_s_) return all;
   const double end_s = *last_s_ + kTimeout_s;
   if (time_s > end_s) {
-    all = angles(end_s);
-    for (double& angle : all) angle *= fading((time_s - end_s) / kEase_s);
+    all = motion(end_s);
+    for (double& part : all) part *= fading((time_s - end_s) / kEase_s);
     return all;
   }
   all = followed(time_s);
   const double share = fading((time_s - eased_s_) / kEase_s);
   for (std::size_t n = 0; n < all.size(); ++n) {
     all[n] += left_[n] * share;
-    all[n] = n == kPitch ? std::clamp(all[n], -90.0, 90.0) : normalized(all[n]);
+    if (n == kPitch) all[n] = std::clamp(all[n], -90.0, 90.0);
+    if (is_periodic(n)) all[n] = normalized(all[n]);
   }
   return all;
 }
 
-void HeadTracker::ease_from(const Angles& shown, double time_s) {
+void HeadTracker::ease_from(const Motion& shown, double time_s) {
   to_ = from_ = target();
   for (std::size_t n = 0; n < left_.size(); ++n) left_[n] = difference(n, shown[n], to_[n]);
   eased_s_ = time_s;
@@ -106,7 +117,7 @@ void HeadTracker::ease_from(const Angles& shown, double time_s) {
 void HeadTracker::set_options(const HeadTrackerOptions& options, double time_s) {
   now_s_ = not_before(time_s);
   const bool live = is_live(now_s_);
-  const Angles shown = angles(now_s_);
+  const Motion shown = motion(now_s_);
   options_ = checked(options);
   if (live) ease_from(shown, now_s_);
 }
@@ -120,10 +131,11 @@ bool HeadTracker::receive(std::span<const std::uint8_t> bytes, double time_s) {
   ++received_;
   now_s_ = not_before(time_s);
   const bool was_live = is_live(now_s_);
-  const Angles shown = angles(now_s_);
+  const Motion shown = motion(now_s_);
   if (was_live) from_ = followed(now_s_);
   last_s_ = now_s_;
-  raw_ = {datagram->yaw_deg, datagram->pitch_deg, datagram->roll_deg};
+  raw_ = {datagram->yaw_deg,      datagram->pitch_deg,    datagram->roll_deg,
+          head_m(datagram->x_cm), head_m(datagram->y_cm), head_m(datagram->z_cm)};
   if (was_live) {
     to_ = target();
   } else {
@@ -135,14 +147,16 @@ bool HeadTracker::receive(std::span<const std::uint8_t> bytes, double time_s) {
 void HeadTracker::recentre(double time_s) {
   now_s_ = not_before(time_s);
   if (!is_live(now_s_)) return;
-  const Angles shown = angles(now_s_);
+  const Motion shown = motion(now_s_);
   centre_ = raw_;
   ease_from(shown, now_s_);
 }
 
-mars::HeadAngles HeadTracker::look(double time_s) const {
-  const Angles all = angles(not_before(time_s));
-  return {all[0], all[1], all[2]};
+mars::HeadAngles HeadTracker::look(double time_s) const { return place(time_s).look; }
+
+HeadPlace HeadTracker::place(double time_s) const {
+  const Motion all = motion(not_before(time_s));
+  return {{all[3], all[4], all[5]}, {all[0], all[1], all[2]}};
 }
 
 bool HeadTracker::is_live(double time_s) const {
@@ -152,10 +166,11 @@ bool HeadTracker::is_live(double time_s) const {
 bool HeadTracker::is_moving(double time_s) const {
   const double now = not_before(time_s);
   if (!last_s_) return false;
-  const Angles shown = angles(now);
-  const Angles rest = is_live(now) ? target() : Angles{};
+  const Motion shown = motion(now);
+  const Motion rest = is_live(now) ? target() : Motion{};
   for (std::size_t n = 0; n < shown.size(); ++n) {
-    if (std::abs(difference(n, shown[n], rest[n])) > kStill_deg) return true;
+    const double still = n < kAngles ? kStill_deg : kStill_m;
+    if (std::abs(difference(n, shown[n], rest[n])) > still) return true;
   }
   return false;
 }

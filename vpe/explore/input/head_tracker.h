@@ -1,15 +1,17 @@
-// Direction of a tracked head, from opentrack's datagrams ("UDP over network").
+// Place and direction of a tracked head, from opentrack's datagrams ("UDP over network").
 //
 // A datagram is 48 bytes: x, y, z in centimetres, then yaw, pitch, roll in degrees, each an IEEE 754 double in
 // little-endian order. In opentrack's convention positive yaw is to the right, positive pitch up and positive
-// roll to the right, as in mars::HeadAngles. Trackers differ, so each angle can be inverted. The position of
-// the head is read but does not move the camera: at kilometres it would change nothing, but a metre or two
-// above the ground the parallax of a moving head is missing.
+// roll to the right, as in mars::HeadAngles; x is to the right, y up and z backwards, away from the screen that the
+// wearer faces (opentrack passes them so to X-Plane: lateral, vertical, aft). Trackers differ, so each angle can be
+// inverted here; positions are inverted in opentrack. A single image at kilometres does not need the position of the
+// head; screens that stand still while the head moves do (vpe/explore/screens).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 
@@ -19,7 +21,8 @@ namespace vpe::explore {
 
 struct HeadDatagram {
   static constexpr std::size_t kBytes = 48;
-  static constexpr double kMaxAngle_deg = 360;  // larger angles cannot be a head's
+  static constexpr double kMaxAngle_deg = 360;     // larger angles cannot be a head's
+  static constexpr double kMaxPosition_cm = 2000;  // positions are brought within it, as far as a room is wide
 
   double x_cm = 0;
   double y_cm = 0;
@@ -47,6 +50,12 @@ struct HeadTrackerOptions {
   bool operator==(const HeadTrackerOptions&) const = default;
 };
 
+// Describes where a head is and how it is turned.
+struct HeadPlace {
+  glm::dvec3 position_m{0, 0, 0};  // right, up, backwards
+  mars::HeadAngles look;
+};
+
 // Follows the datagrams. Times are seconds of one clock that does not run backwards (an earlier time counts as
 // the last one). The look is a continuous function of time, also when datagrams stop or return: it follows each
 // datagram with the time constant smoothing_s, eases to zero within kEase_s after kTimeout_s without datagrams,
@@ -69,38 +78,43 @@ class HeadTracker {
   // Processes a datagram. Returns false if the bytes are not one; these are counted and otherwise ignored.
   bool receive(std::span<const std::uint8_t> bytes, double time_s);
 
-  // Makes the head's present direction straight ahead; the look eases there. Does nothing if no datagram came
-  // within the time-out.
+  // Makes the head's present direction straight ahead and its place zero; the look eases there. Does nothing if no
+  // datagram came within the time-out.
   void recentre(double time_s);
 
   // Returns the direction relative to the platform: yaw and roll in [-180, 180], pitch in [-90, 90].
   mars::HeadAngles look(double time_s) const;
 
+  // Returns look() and the head's position relative to where it was at recentre(), or to the tracker's zero: metres to
+  // the right, up and backwards, within twice kMaxPosition_cm. HeadTrackerOptions::scale and the inversions are of
+  // angles alone.
+  HeadPlace place(double time_s) const;
+
   // Returns true if a datagram came within the time-out.
   bool is_live(double time_s) const;
 
-  // Returns true if look() is still changing at this time, so that the next image will differ.
+  // Returns true if place() is still changing at this time, so that the next image will differ.
   bool is_moving(double time_s) const;
 
   std::uint64_t received() const { return received_; }
   std::uint64_t ignored() const { return ignored_; }
 
  private:
-  using Angles = std::array<double, 3>;  // yaw, pitch, roll, degrees
+  using Motion = std::array<double, 6>;  // yaw, pitch, roll, degrees; right, up, backwards, metres
 
-  Angles target() const;
-  Angles followed(double time_s) const;
-  Angles angles(double time_s) const;
-  void ease_from(const Angles& shown, double time_s);
+  Motion target() const;
+  Motion followed(double time_s) const;
+  Motion motion(double time_s) const;
+  void ease_from(const Motion& shown, double time_s);
   double not_before(double time_s) const;
 
   HeadTrackerOptions options_;
   std::optional<double> last_s_;  // time of the last datagram
-  Angles raw_{};                  // its angles
-  Angles centre_{};               // raw angles that are straight ahead
-  Angles from_{};                 // followed look at last_s_
-  Angles to_{};                   // look that is followed since then
-  Angles left_{};                 // difference of the look from the followed one, at eased_s_
+  Motion raw_{};                  // what it says
+  Motion centre_{};               // what it says of a head that looks straight ahead, at zero
+  Motion from_{};                 // followed motion at last_s_
+  Motion to_{};                   // motion that is followed since then
+  Motion left_{};                 // difference of the motion from the followed one, at eased_s_
   double eased_s_ = 0;
   double now_s_ = 0;
   std::uint64_t received_ = 0;
