@@ -23,10 +23,13 @@ LevelRule level_rule(const vpe::core::DrawRequest& request, bool exact) {
 
 ComposedObjects compose(const Scene& scene, const ImageLight& light, const LevelRule& rule,
                         vpe::base::ThreadPool& pool, vpe::core::Frame& frame,
-                        std::span<const std::uint8_t> only) {
+                        std::span<const std::uint8_t> only, std::span<const PlacedPoster> posters) {
   ComposedObjects out;
-  if (scene.is_empty() || frame.width <= 0) return out;
+  if ((scene.is_empty() && posters.empty()) || frame.width <= 0) return out;
+  const SeenPosters seen_posters(posters, light.request.view, light.request.settings.gamma);
   out.clear_m = scene.clear_distance_m(rule.camera_m, rule.tolerance_px / (rule.focal_px * rule.stretch));
+  out.clear_m = std::min(out.clear_m, seen_posters.clear_m());
+  if (scene.is_empty() && seen_posters.is_empty()) return out;
   const ObjectRays rays(scene, rule);
   const SunGrid before_sun =
       is_lit(light.request.settings) && !frame.colour.empty() ? SunGrid(rays, light.request.sun) : SunGrid();
@@ -36,7 +39,8 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
       shows_volumes && !before_sun.is_empty()
           ? VolumeLights(rays, before_sun, light, cone_of_view(light.request.view, view_rays), pool)
           : VolumeLights();
-  SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px, nullptr};
+  SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px, nullptr, nullptr};
+  if (!seen_posters.is_empty()) image.posters = &seen_posters;
   if (shows_volumes) image.volume_lights = &volume_lights;
   const vpe::core::SettingsValues& settings = light.request.settings;
   if (only.empty() && (settings.samples > 1 || settings.smooth_edges)) image.samples = 8;
@@ -77,8 +81,9 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
   std::sort(instances.begin(), instances.end());
   instances.erase(std::unique(instances.begin(), instances.end()), instances.end());
   out.objects = static_cast<std::int64_t>(instances.size());
-  out.is_see_through = std::ranges::any_of(
-      instances, [&](std::uint32_t n) { return scene.models()[scene.instance(n).model]->is_see_through(); });
+  out.is_see_through = seen_posters.is_see_through() || std::ranges::any_of(instances, [&](std::uint32_t n) {
+                         return scene.models()[scene.instance(n).model]->is_see_through();
+                       });
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "objects/draw/object_shader.h"
+#include "objects/posters/placed_poster.h"
 #include "objects/scene/scene.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
@@ -30,7 +31,7 @@ struct ComposedObjects {
   double geometric_error_m = 0;
   double screen_space_error_px = 0;
   bool is_see_through = false;  // a drawn object may be semi-transparent
-  // Gives a distance from the camera within which there is no object, in the image or beside it.
+  // Gives a distance from the camera within which there is no object and no image, in the view or beside it.
   double clear_m = std::numeric_limits<double>::infinity();
 };
 
@@ -39,9 +40,9 @@ LevelRule level_rule(const vpe::core::DrawRequest& request, bool exact);
 
 // Draws the objects into the frame of the request's view, whose range_m must hold the ranges of the ground (kSkyRange:
 // none). Colours, where the frame has any, must be without gamma. Pixels where `only` is 0 stay; empty: all are drawn.
-// The result does not depend on threads. Pure but for what `light.ground` reads.
+// `posters` are images in the world, hidden and hiding as objects are. The result does not depend on threads. Pure but for what `light.ground` reads.
 ComposedObjects compose(const Scene& scene, const ImageLight& light, const LevelRule& rule,
                         vpe::base::ThreadPool& pool, vpe::core::Frame& frame,
-                        std::span<const std::uint8_t> only = {});
+                        std::span<const std::uint8_t> only = {}, std::span<const PlacedPoster> posters = {});
 
 }  // namespace objects

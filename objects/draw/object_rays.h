@@ -80,6 +80,11 @@ struct ObjectHit {
   float opacity = 255;      // of a layer of sticks, 0 to 255
 };
 
+// Marks the number of an image of the scene (seen_posters.h) in ObjectHit::object. Then `weights` is its uv and
+// `opacity` is PosterHit::texels.
+inline constexpr std::uint32_t kPosterBit = std::uint32_t{1} << 31U;
+inline bool is_poster(std::uint32_t object) { return (object & kPosterBit) != 0; }
+
 struct ObjectRay {
   glm::dvec3 origin_m;   // body-fixed
   glm::dvec3 direction;  // unit

@@ -60,11 +60,13 @@ Haze haze_at(const ImageLight& light, const glm::dvec3& direction, double range_
 }
 
 ObjectShader::ObjectShader(const ObjectRays& rays, const SunGrid& before_sun,
-                           const std::vector<PlacedObject>& objects, const ImageLight& light)
+                           const std::vector<PlacedObject>& objects, const ImageLight& light,
+                           const SeenPosters* posters)
     : rays_(rays),
       before_sun_(before_sun),
       objects_(objects),
       light_(light),
+      posters_(posters),
       pixel_rad_(1 / rays.rule().focal_px),
       is_lit_(is_lit(light.request.settings)) {}
 
@@ -118,6 +120,7 @@ ObjectShader::Surface ObjectShader::surface_of(const PlacedObject& o, const Obje
 }
 
 glm::dvec4 ObjectShader::colour_of(const ObjectRay& ray, const ObjectHit& hit) const {
+  if (is_poster(hit.object)) return posters_->colour(hit.object & ~kPosterBit, hit.weights, hit.opacity);
   const PlacedObject& o = objects_[hit.object];
   const vpe::core::SettingsValues& settings = light_.request.settings;
   if (draws_lines(settings.mode)) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "objects/draw/object_rays.h"
+#include "objects/draw/seen_posters.h"
 #include "objects/draw/sun_grid.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/ground_light.h"
@@ -47,7 +48,7 @@ class ObjectShader {
  public:
   // All must outlive this.
   ObjectShader(const ObjectRays& rays, const SunGrid& before_sun, const std::vector<PlacedObject>& objects,
-               const ImageLight& light);
+               const ImageLight& light, const SeenPosters* posters = nullptr);
 
   // Returns the colour of what nearest_object() found among these objects.
   ObjectColour colour(const ObjectRay& ray, const RayResult& seen) const;
@@ -73,6 +74,7 @@ class ObjectShader {
   const SunGrid& before_sun_;
   const std::vector<PlacedObject>& objects_;
   ImageLight light_;
+  const SeenPosters* posters_;  // null: no ray meets any
   double pixel_rad_;
   bool is_lit_;
 };

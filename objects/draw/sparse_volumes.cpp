@@ -24,7 +24,8 @@ bool has_ray(int at, int first, int end) { return (at - first) % 2 == 0 || at + 
 // Returns whether nothing but volumes shows in a part, and these change little from pixel to pixel.
 bool SquarePainter::is_sparse(const SubSquare& part) const {
   const LevelRule& rule = image_.rays.rule();
-  if (part.volumes.empty() || !part.near_to_far.empty() || !image_.only.empty()) return false;
+  if (part.volumes.empty() || !part.near_to_far.empty() || !part.posters.empty() || !image_.only.empty())
+    return false;
   if (!(rule.tolerance_px > 0)) return false;  // exact
   return std::all_of(part.volumes.begin(), part.volumes.end(), [&](std::uint32_t n) {
     const PlacedObject& o = near_to_far_[n];

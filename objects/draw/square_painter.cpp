@@ -38,6 +38,8 @@ SquarePainter::SquarePainter(const Image& image, const vpe::core::Frame& frame, 
       ground_(frame, square) {
   const ViewCone cone = cone_of(view_, image.view_rays, square, 1.5);
   near_to_far_ = image_.rays.in_cone(cone, ground_.farthest_m());
+  if (image_.posters != nullptr)
+    posters_ = image_.posters->in_cone(cone.axis, cone.cosine, ground_.farthest_m());
   if (!frame.colour.empty() && ground_.has_ground())
     may_be_shaded_ = find_shadows(cone, ground_.nearest_m(), ground_.farthest_ground_m());
 }
@@ -60,7 +62,7 @@ bool SquarePainter::is_wanted(int x, int y) const {
 }
 
 SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const ObjectNumbers& among) const {
-  SubSquare part{square, {}, false, {}, {}, false};
+  SubSquare part{square, {}, false, {}, {}, false, {}};
   const ViewCone cone = cone_of(view_, image_.view_rays, square, 1);
   double near_m = std::numeric_limits<double>::infinity();
   double far_m = 0;
@@ -84,6 +86,7 @@ SquarePainter::SubSquare SquarePainter::part_of(const PixelSquare& square, const
     const vpe::core::Projected at = vpe::core::project(view_, o.around.centre_m);
     if (!at.behind) part.small.push_back({at.xy, 0.5 * o.diameter_px + 0.75});
   }
+  if (!posters_.empty()) part.posters = image_.posters->in_cone(cone.axis, cone.cosine, until_m);
   part.may_be_shaded = may_be_shaded_ && find_shadows(cone, near_m, far_m);
   return part;
 }
@@ -93,15 +96,45 @@ ObjectRay SquarePainter::ray_of(int x, int y, const glm::dvec2& offset) const {
           image_.view_rays.at(drawn_part_.x + x + 0.5 + offset.x, drawn_part_.y + y + 0.5 + offset.y)};
 }
 
+void SquarePainter::meet(const SubSquare& part, const ObjectRay& ray, double until_m) {
+  nearest_object(near_to_far_, part.near_to_far, ray, until_m, image_.pixel_rad, scratch_);
+  if (!part.posters.empty()) meet_posters(part, ray, until_m);
+}
+
+// Puts them into their order among the surfaces that the ray meets. An opaque one ends the ray.
+void SquarePainter::meet_posters(const SubSquare& part, const ObjectRay& ray, double until_m) {
+  for (const std::uint32_t n : part.posters) {
+    const std::optional<PosterHit> met = image_.posters->meet(n, ray.direction, until_m);
+    if (!met || (scratch_.has_front && met->range_m >= scratch_.front.range_m)) continue;
+    ObjectHit hit;
+    hit.range_m = met->range_m;
+    hit.object = n | kPosterBit;
+    hit.weights = met->uv;
+    hit.opacity = met->texels;
+    const auto behind =
+        std::upper_bound(scratch_.layers.begin(), scratch_.layers.end(), hit.range_m,
+                         [](double range_m, const ObjectHit& layer) { return range_m < layer.range_m; });
+    if (!image_.posters->is_opaque(n)) {
+      scratch_.layers.insert(behind, hit);
+      continue;
+    }
+    scratch_.layers.erase(behind, scratch_.layers.end());
+    scratch_.front = hit;
+    scratch_.has_front = true;
+  }
+}
+
+std::uint32_t SquarePainter::front_of(const ObjectHit& hit) const {
+  return 1 + (is_poster(hit.object) ? hit.object : near_to_far_[hit.object].instance);
+}
+
 ObjectColour SquarePainter::object_at(const SubSquare& part, const ObjectRay& ray, double until_m,
                                       std::uint32_t& front) {
-  nearest_object(near_to_far_, part.near_to_far, ray, until_m, image_.pixel_rad, scratch_);
+  meet(part, ray, until_m);
   const bool has_surface = scratch_.has_front || !scratch_.layers.empty();
   if (!has_surface && part.volumes.empty()) return {};
   if (!has_surface) return volume_shader_->colour(ray, scratch_, part.volumes, until_m);
-  front =
-      1 +
-      near_to_far_[scratch_.layers.empty() ? scratch_.front.object : scratch_.layers.front().object].instance;
+  front = front_of(scratch_.layers.empty() ? scratch_.front : scratch_.layers.front());
   return part.volumes.empty() ? shader_->colour(ray, scratch_)
                               : volume_shader_->colour(ray, scratch_, part.volumes, until_m);
 }
@@ -119,7 +152,7 @@ glm::dvec4 SquarePainter::smooth_sample(const SubSquare& part, int x, int y) {
   for (const glm::dvec2& offset : kEdgeOffsets) {
     const ObjectRay ray = ray_of(x, y, offset);
     const double ground_m = ground_.beside(x, y, offset);
-    nearest_object(near_to_far_, part.near_to_far, ray, ground_m, image_.pixel_rad, scratch_);
+    meet(part, ray, ground_m);
     if (!scratch_.has_front && scratch_.layers.empty() && part.volumes.empty()) continue;
     const auto colour = [&] {
       return (part.volumes.empty() ? shader_->colour(ray, scratch_)
@@ -150,7 +183,7 @@ void SquarePainter::see_pixel(const SubSquare& part, int x, int y) {
   SeenPixel& seen = seen_at(x, y);
   const ObjectRay ray = ray_of(x, y, {0, 0});
   const auto range_m = static_cast<double>(ground_.at(x, y));
-  if (!part.near_to_far.empty() || !part.volumes.empty())
+  if (!part.near_to_far.empty() || !part.volumes.empty() || !part.posters.empty())
     seen.object = object_at(part, ray, range_m, seen.front);
   see_light(part, x, y);
 }
@@ -172,7 +205,7 @@ const SeenPixel* SquarePainter::beside(int x, int y, const Seen& seen) const {
 void SquarePainter::see() {
   seen_.resize(static_cast<std::size_t>(square_.x1 - square_.x0) *
                static_cast<std::size_t>(square_.y1 - square_.y0));
-  shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light);
+  shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light, image_.posters);
   const ObjectNumbers all = all_of(near_to_far_);
   if (image_.volume_lights != nullptr) {
     volume_shader_.emplace(*shader_, *image_.volume_lights, near_to_far_, image_.light);
@@ -189,7 +222,7 @@ void SquarePainter::see() {
         const SceneBall& ball = near_to_far_[n].around;
         if (meets(cone, view_.camera.position_m, ball.centre_m, ball.radius_m)) among.push_back(n);
       }
-      if (!among.empty() || may_be_shaded_) see_parts(group, among);
+      if (!among.empty() || may_be_shaded_ || !posters_.empty()) see_parts(group, among);
     }
   }
 }
@@ -199,7 +232,8 @@ void SquarePainter::see_parts(const PixelSquare& square, const ObjectNumbers& am
     for (int x = square.x0; x < square.x1; x += kPart_px) {
       SubSquare part =
           part_of({x, y, std::min(x + kPart_px, square.x1), std::min(y + kPart_px, square.y1)}, among);
-      if (part.near_to_far.empty() && part.volumes.empty() && !part.may_be_shaded) continue;
+      if (part.near_to_far.empty() && part.volumes.empty() && !part.may_be_shaded && part.posters.empty())
+        continue;
       if (is_sparse(part)) {
         see_sparsely(part);
         parts_.push_back(std::move(part));
@@ -236,7 +270,8 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
   if (!is_edge && !is_shadow_edge && !(here.object.over.w > 0) && here.light >= 1) return;
   ObjectColour object = here.object;
   double light = static_cast<double>(here.light);
-  if (is_edge && (!part.near_to_far.empty() || part.has_small_volumes)) object.over = smooth_sample(part, x, y);
+  if (is_edge && (!part.near_to_far.empty() || part.has_small_volumes || !part.posters.empty()))
+    object.over = smooth_sample(part, x, y);
   if (is_shadow_edge && part.may_be_shaded) {
     light = 0;
     for (const glm::dvec2& offset : kEdgeOffsets)
@@ -291,7 +326,8 @@ void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
     paint_small(seen, frame);
   }
   for (const SeenPixel& pixel : seen_) {
-    if (pixel.front != 0 && (drawn_.instances.empty() || drawn_.instances.back() != pixel.front - 1))
+    if (pixel.front != 0 && !is_poster(pixel.front) &&
+        (drawn_.instances.empty() || drawn_.instances.back() != pixel.front - 1))
       drawn_.instances.push_back(pixel.front - 1);
   }
   for (const std::uint32_t n : volumes_) {

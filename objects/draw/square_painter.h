@@ -38,8 +38,9 @@ inline glm::dvec3 to_dvec3(const vpe::base::Rgb& c) { return {c.r, c.g, c.b}; }
 
 // Holds what the first step found at a pixel.
 struct SeenPixel {
-  std::uint32_t front = 0;  // 1 + instance of the first surface that is met; 0: none
-  float light = 1;          // of the sun on the ground there
+  std::uint32_t front =
+      0;            // 1 + instance, or 1 + image with kPosterBit, of the first surface that is met; 0: none
+  float light = 1;  // of the sun on the ground there
   ObjectColour object;
 };
 
@@ -56,13 +57,14 @@ class SquarePainter {
     int samples = 1;                              // at edges; 1: edges are not smoothed
     double pixel_rad = 0;                         // angle of a pixel at the image's middle
     const VolumeLights* volume_lights = nullptr;  // null: the scene has no volumes
+    const SeenPosters* posters = nullptr;         // null: the camera sees none
   };
 
   // `frame` is read only.
   SquarePainter(const Image& image, const vpe::core::Frame& frame, const PixelSquare& square);
 
   // Returns true if an object or a shadow of one may show in the square. Only then see() and paint() do anything.
-  bool may_show() const { return !near_to_far_.empty() || may_be_shaded_; }
+  bool may_show() const { return !near_to_far_.empty() || may_be_shaded_ || !posters_.empty(); }
   void see();
   const SeenPixel& at(int x, int y) const {
     return seen_[static_cast<std::size_t>(y - square_.y0) * static_cast<std::size_t>(square_.x1 - square_.x0) +
@@ -92,6 +94,7 @@ class SquarePainter {
     std::vector<SmallObject> small;
     ObjectNumbers volumes;
     bool has_small_volumes = false;
+    ObjectNumbers posters;  // of Image::posters
   };
   SeenPixel& seen_at(int x, int y) { return const_cast<SeenPixel&>(at(x, y)); }
   bool is_wanted(int x, int y) const;
@@ -101,6 +104,10 @@ class SquarePainter {
   ObjectRay ray_of(int x, int y, const glm::dvec2& offset) const;
   void add_small(const PlacedObject& object, int x, int y, double share, const glm::dvec3& colour,
                  vpe::core::Frame& frame);
+  // Finds what a ray meets before the ground at until_m, volumes apart, into scratch_.
+  void meet(const SubSquare& part, const ObjectRay& ray, double until_m);
+  void meet_posters(const SubSquare& part, const ObjectRay& ray, double until_m);
+  std::uint32_t front_of(const ObjectHit& hit) const;
   ObjectColour object_at(const SubSquare& part, const ObjectRay& ray, double until_m, std::uint32_t& front);
   double light_sample(int x, int y, const glm::dvec2& offset) const;
   glm::dvec4 smooth_sample(const SubSquare& part, int x, int y);
@@ -134,6 +141,7 @@ class SquarePainter {
   std::optional<ObjectShader> shader_;
   std::optional<VolumeShader> volume_shader_;  // where volumes may show
   ObjectNumbers volumes_;                      // of near_to_far_
+  ObjectNumbers posters_;                      // of Image::posters
   std::vector<SeenPixel> seen_;
   std::vector<SubSquare> parts_;
   RayResult scratch_;

@@ -66,6 +66,12 @@ std::vector<std::filesystem::path> files_of(const SceneFile& scene) {
       if (known.insert(file).second) files.push_back(file);
     }
   }
+  for (const PosterEntry& poster : scene.posters) {
+    if (known.insert(poster.file).second) files.push_back(poster.file);
+  }
+  for (const KioskEntry& kiosk : scene.kiosks) {
+    if (!kiosk.hotspots.empty() && known.insert(kiosk.hotspots).second) files.push_back(kiosk.hotspots);
+  }
   return files;
 }
 

@@ -27,6 +27,7 @@
 //   model = "rover"                            # wheelbase_m and track_m, or neither
 //   points = [[0, 137.4, -4.6], [60, 137.5, -4.6, 90]]  # seconds, lon, lat, heading
 //                                            # and height above the ground; "way": heading along the way
+//   [[picture]] and [[kiosk]]: poster_entry.h
 //
 // GeoJSON (`*.geojson`, `*.json`) is a FeatureCollection of Points. The properties model (a path), name, height,
 // altitude, heading, pitch, roll, scale and align are read; others are not, nor is a third coordinate.
@@ -46,6 +47,8 @@
 #include <vector>
 
 #include "mars/geodesy/sphere.h"
+#include "objects/files/height_kind.h"
+#include "objects/files/poster_entry.h"
 #include "objects/files/up_axis.h"
 #include "objects/volumes/volume_formulas.h"
 
@@ -56,6 +59,7 @@ inline constexpr std::size_t kMostInstances =
 inline constexpr std::size_t kMostSceneFileBytes = std::size_t{64} << 20U;
 inline constexpr std::size_t kMostNameBytes = 200;
 inline constexpr std::size_t kMostPolygonCorners = 2000;
+inline constexpr std::size_t kMostPosters = 1000;  // tables [[picture]] of a file
 
 struct ModelEntry {
   std::string name;            // unique in the file; of GeoJSON: the path as it stands there
@@ -63,11 +67,6 @@ struct ModelEntry {
   double unit_m = 1;           // metres of a unit of the model file
   UpAxis up = UpAxis::kAuto;
   std::optional<VolumeFormula> formula = std::nullopt;
-};
-
-enum class HeightKind : std::uint8_t {
-  kAboveGround,
-  kAltitude,  // above the planet's sphere
 };
 
 // Describes where and how a model stands. Heading, pitch and roll are applied in this order.
@@ -147,6 +146,8 @@ struct SceneFile {
   std::vector<ObjectEntry> objects;
   std::vector<ScatterEntry> scatters;
   std::vector<PathEntry> paths;
+  std::vector<PosterEntry> posters;
+  std::vector<KioskEntry> kiosks;
 };
 
 // Reads a scene file. Throws vpe::base::FileError for a file that cannot be read or is larger than
@@ -159,8 +160,8 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 SceneFile parse_scene_toml(std::string_view text, const std::filesystem::path& path);
 SceneFile parse_scene_geojson(std::string_view text, const std::filesystem::path& path);
 
-// Returns the scene file, the files of its models, and those that they consist of (model_references.h), each once; volumes by
-// formula have none.
+// Returns the scene file, the files of its models, those that they consist of (model_references.h), images and files of
+// hotspots, each once; volumes by formula have none.
 std::vector<std::filesystem::path> files_of(const SceneFile& scene);
 
 }  // namespace objects

@@ -33,6 +33,9 @@ inline constexpr NumberRange kOpticalDepthRange{0, 100, true};
 inline constexpr NumberRange kChannelRange{0, 255};
 inline constexpr NumberRange kGroundVoxelRange_m{0.001, 1e5};
 inline constexpr NumberRange kExtinctionRange_per_m{0, 1e6, true};
+inline constexpr NumberRange kPosterSizeRange_m{0.01, 1e7};
+inline constexpr NumberRange kPosterFovRange_deg{0.001, 179};
+inline constexpr NumberRange kTiltRange_deg{-90, 90};
 
 // Returns what is wrong with a name, or with the path of a model file; "" if nothing is.
 std::string problem_of_name(std::string_view name);

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "objects/files/poster_toml.h"
 #include "objects/files/scene_file.h"
 #include "objects/files/scene_limits.h"
 #include "objects/files/volume_model_file.h"
@@ -23,7 +24,7 @@ class SceneTomlReader {
 
   SceneFile read(const toml::table& root) {
     const TomlTable top(root, "the file", file_);
-    top.require_known({"version", "model", "volume", "object", "scatter", "path"});
+    top.require_known({"version", "model", "volume", "object", "scatter", "path", "picture", "kiosk"});
     if (!top.has("version")) top.fail("version is missing; expected version = 1");
     top.integer("version", 1, 1);
     each(top, "model", "[[model]]", [this](const TomlTable& table) { read_model(table); });
@@ -31,6 +32,15 @@ class SceneTomlReader {
     each(top, "object", "[[object]]", [this](const TomlTable& table) { read_object(table); });
     each(top, "scatter", "[[scatter]]", [this](const TomlTable& table) { read_scatter(table); });
     each(top, "path", "[[path]]", [this](const TomlTable& table) { read_path(table); });
+    each(top, "picture", "[[picture]]", [this](const TomlTable& table) {
+      if (scene_.posters.size() == kMostPosters)
+        table.fail("expected at most " + std::to_string(kMostPosters) + " tables [[picture]]");
+      scene_.posters.push_back(read_poster(table, scene_.path));
+    });
+    each(top, "kiosk", "[[kiosk]]", [this](const TomlTable& table) {
+      count_instances(table, 1);
+      scene_.kiosks.push_back(read_kiosk(table, scene_.path));
+    });
     return std::move(scene_);
   }
 

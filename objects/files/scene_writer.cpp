@@ -79,13 +79,15 @@ bool is_alike(const Placing& a, const Placing& b) {
 class SceneTomlWriter {
  public:
   SceneTomlWriter(const SceneFile& scene, const fs::path& file) : file_(file) {
-    const auto& [path, models, objects, scatters, paths] = scene;
+    const auto& [path, models, objects, scatters, paths, posters, kiosks] = scene;
     text_ = "version = 1\n";
     for (const ModelEntry& model : models) model_names_.push_back(name_in_quotes(model.name));
     for (const ModelEntry& model : models) write_model(model);
     for (const ObjectEntry& object : objects) write_object(object);
     for (const PathEntry& entry : paths) write_path(entry);
     for (const ScatterEntry& scatter : scatters) write_scatter(scatter);
+    for (const PosterEntry& poster : posters) write_poster(poster);
+    for (const KioskEntry& kiosk : kiosks) write_kiosk(kiosk);
   }
 
   std::string take() { return std::move(text_); }
@@ -226,6 +228,59 @@ class SceneTomlWriter {
     add_align(follows_slope);
     if (tumbles) add("tumble", "true");
     if (most != 0) add("most", std::to_string(most));
+  }
+
+  void write_poster(const PosterEntry& poster) {
+    constexpr std::array<std::string_view, 4> kForms{"pane", "billboard", "photograph", "dome"};
+    const auto& [name, file, form, place, height_kind, height_m, opacity, width_m, tall_m, heading_deg,
+                 pitch_deg, roll_deg, fov_deg, distance_m, radius_m, fade_m, is_cylinder, replaces_ground] =
+        poster;
+    begin("picture");
+    add_name(name);
+    add("file", path_text(file, file_));
+    add("form", "\"" + std::string(kForms[static_cast<std::size_t>(form)]) + "\"");
+    if (place) {
+      add("lon", toml_number(place->lon_deg));
+      add("lat", toml_number(place->lat_deg));
+      add(height_kind == HeightKind::kAltitude ? "altitude" : "height", toml_number(height_m));
+    }
+    add_number("opacity", opacity, 1);
+    if (form == PosterForm::kPane || form == PosterForm::kBillboard) {
+      add("width_m", toml_number(width_m));
+      add_number("tall_m", tall_m, 0);
+    }
+    if (form == PosterForm::kPane) {
+      add_number("heading", heading_deg, 0);
+      add_number("tilt", pitch_deg, 0);
+    } else if (form == PosterForm::kPhotograph) {
+      add("yaw", toml_number(heading_deg));
+      add_number("pitch", pitch_deg, 0);
+      add_number("roll", roll_deg, 0);
+      add("fov", toml_number(fov_deg));
+      add("distance_m", toml_number(distance_m));
+    } else if (form == PosterForm::kDome) {
+      add("radius_m", toml_number(radius_m));
+      add("fade_m", toml_number(fade_m));
+      if (is_cylinder) add("shape", "\"cylinder\"");
+      add_number("heading", heading_deg, 0);
+      if (replaces_ground) add("replaces_ground", "true");
+    }
+  }
+
+  void write_kiosk(const KioskEntry& kiosk) {
+    const auto& [name, place, heading_deg, size_m, panorama, hotspots, beside_m] = kiosk;
+    begin("kiosk");
+    add("size_m", toml_number(size_m));
+    if (!hotspots.empty()) {
+      add("hotspots", path_text(hotspots, file_));
+      add("beside_m", toml_number(beside_m));
+      return;
+    }
+    add_name(name);
+    add("lon", toml_number(place.lon_deg));
+    add("lat", toml_number(place.lat_deg));
+    add_number("heading", heading_deg, 0);
+    if (!panorama.empty()) add("panorama", path_text(panorama, file_));
   }
 
   fs::path file_;

@@ -78,6 +78,30 @@ glm::vec4 bilinear(const Texture& t, const glm::vec2& uv) {
   return unweighted(sum);
 }
 
+glm::vec4 bilinear_within(const Texture& t, const glm::vec2& uv, bool repeats_across) {
+  const float x = uv.x * static_cast<float>(t.width) - 0.5F;
+  const float y = uv.y * static_cast<float>(t.height) - 0.5F;
+  const float left = std::floor(x);
+  const float top = std::floor(y);
+  glm::vec4 sum(0);
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      const float wx = i == 0 ? 1.0F - (x - left) : x - left;
+      const float wy = j == 0 ? 1.0F - (y - top) : y - top;
+      const float column = left + static_cast<float>(i);
+      const int across = repeats_across
+                             ? wrapped(column, t.width)
+                             : static_cast<int>(glm::clamp(column, 0.0F, static_cast<float>(t.width - 1)));
+      const int down =
+          static_cast<int>(glm::clamp(top + static_cast<float>(j), 0.0F, static_cast<float>(t.height - 1)));
+      sum += weighted(to_vec4(t.texels[static_cast<std::size_t>(down) * static_cast<std::size_t>(t.width) +
+                                       static_cast<std::size_t>(across)]),
+                      wx * wy);
+    }
+  }
+  return unweighted(sum);
+}
+
 }  // namespace
 
 TexturePyramid::TexturePyramid(Texture texture) {
@@ -95,6 +119,17 @@ glm::vec4 TexturePyramid::sample(const glm::vec2& uv, float footprint_uv) const 
   const glm::vec4 fine = bilinear(levels_[finer], uv);
   if (share <= 0.0F || finer + 1 >= levels_.size()) return fine;
   return glm::mix(fine, bilinear(levels_[finer + 1], uv), share);
+}
+
+glm::vec4 TexturePyramid::sample_within(const glm::vec2& uv, float footprint_texels,
+                                        bool repeats_across) const {
+  const auto last = static_cast<float>(levels_.size() - 1);
+  const float level = footprint_texels > 1 ? std::min(last, std::log2(footprint_texels)) : 0.0F;
+  const auto finer = static_cast<std::size_t>(level);
+  const float share = level - static_cast<float>(finer);
+  const glm::vec4 fine = bilinear_within(levels_[finer], uv, repeats_across);
+  if (share <= 0.0F || finer + 1 >= levels_.size()) return fine;
+  return glm::mix(fine, bilinear_within(levels_[finer + 1], uv, repeats_across), share);
 }
 
 glm::vec4 TexturePyramid::mean() const { return to_vec4(levels_.back().texels.front()); }

@@ -17,6 +17,9 @@ class TexturePyramid {
   // Returns the colour, 0 to 255 with alpha, at texture coordinates, which repeat. footprint_uv is the side of what a
   // pixel covers in texture coordinates; two levels are mixed by it. Bilinear in each level, pixel centres at +0.5.
   glm::vec4 sample(const glm::vec2& uv, float footprint_uv) const;
+  // Returns the colour at coordinates of an image that does not repeat, or across only. Beyond its edges lies what is at them.
+  // footprint_texels is the side of what a pixel covers, in texels of the finest level. Filtered as sample().
+  glm::vec4 sample_within(const glm::vec2& uv, float footprint_texels, bool repeats_across) const;
   // Returns the mean of all texels.
   glm::vec4 mean() const;
   std::size_t bytes() const;

@@ -4,6 +4,7 @@
 
 #include "objects/files/scene_file.h"
 #include "vpe/app/cli/digest.h"
+#include "vpe/app/scene/poster_images.h"
 
 namespace vpe::app {
 
@@ -23,6 +24,14 @@ SceneDigests::Known SceneDigests::of(const std::string& scene_file) {
   for (const std::filesystem::path& file : objects::files_of(scene)) {
     entry.stamps.emplace_back(file, base::file_stamp(file));
     entry.known.checksums.push_back(checksum_of(file));
+  }
+  for (const objects::PosterEntry& poster : scene.posters) {
+    // The image itself is one of files_of().
+    for (const std::filesystem::path& file : files_of_poster(poster)) {
+      if (file == poster.file) continue;
+      entry.stamps.emplace_back(file, base::file_stamp(file));
+      entry.known.checksums.push_back(checksum_of(file));
+    }
   }
   return (entries_[scene_file] = std::move(entry)).known;
 }

@@ -1,10 +1,14 @@
 #include "vpe/app/scene/object_renderer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "objects/draw/composer.h"
+#include "objects/draw/seen_posters.h"
 #include "paging/planet/planet_look.h"
 #include "paging/planet/planet_user.h"
 #include "paging/shading/ground_light.h"
@@ -16,6 +20,33 @@
 namespace vpe::app {
 
 namespace {
+
+// Returns whether a dome seems to hide all of the ground, and no object is before it: directions at even distances are tried.
+bool may_leave_ground_out(const std::vector<objects::PlacedPoster>& posters, const objects::Scene& scene,
+                          const core::DrawRequest& request) {
+  constexpr int kSteps = 16;
+  const objects::SeenPosters seen(posters, request.view, 1);
+  if (seen.size() != 1 || !seen.replaces_ground(0) || !seen.is_opaque(0)) return false;
+  const core::SubRectangle part = core::drawn_part(request.view);
+  double far_m = 0;
+  for (int j = 0; j <= kSteps; ++j) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = part.x + 0.5 + static_cast<double>(part.width - 1) * i / kSteps;
+      const double y = part.y + 0.5 + static_cast<double>(part.height - 1) * j / kSteps;
+      const auto hit =
+          seen.meet(0, core::pixel_ray(request.view, x, y), std::numeric_limits<double>::infinity());
+      if (!hit) return false;
+      far_m = std::max(far_m, hit->range_m);
+    }
+  }
+  bool has_objects = false;
+  scene.visit(
+      [&](const objects::SceneBall& ball) {
+        return glm::distance(ball.centre_m, request.view.camera.position_m) - ball.radius_m < 2 * far_m;
+      },
+      [&](std::uint32_t) { has_objects = true; });
+  return !has_objects;
+}
 
 // What draws objects; made for the first request that has any.
 class ObjectPass {
@@ -50,17 +81,44 @@ class ObjectPass {
             ": what is cut out of the ground is drawn by rays, with rays.mode=volume or boundary");
   }
 
-  void draw(const objects::Scene& scene, const core::DrawRequest& request, bool is_exact,
-            std::span<const std::uint8_t> only, core::Frame& frame, core::DrawResult& result) {
+  // Returns the image without its ground where a dome hides all of it, and nullopt elsewhere.
+  std::optional<core::DrawResult> draw_dome(const PlacedScene& placed, const core::DrawRequest& request) {
+    if (!placed.posters || !may_leave_ground_out(*placed.posters, *placed.scene, request)) return std::nullopt;
+    core::DrawResult result;
+    core::Frame& frame = result.frame;
+    const glm::ivec2 size = core::drawn_size(request.view);
+    frame.width = size.x;
+    frame.height = size.y;
+    const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    frame.colour.assign(pixels, {});
+    frame.range_m.assign(pixels, core::kSkyRange);
+    const paging::PlanetMeta& meta = planet_->meta();
+    core::state_data(result.certificate,
+                     {.tolerance_px = request.settings.lod_tolerance_px,
+                      .resampling_max_m = meta.resampling.max_m,
+                      .resampling_rms_m = meta.resampling.rms_m,
+                      .illustration = meta.illustration},
+                     meta.sources);
+    result.certificate.exaggeration = request.settings.exaggeration;
+    result.certificate.corner_stretch = core::corner_stretch(request.view);
+    draw(*placed.scene, placed.posters.get(), request, false, {}, frame, result);
+    // Between the directions that were tried the panorama may have an end.
+    if (std::ranges::any_of(frame.range_m, [](float r) { return std::isinf(r); })) return std::nullopt;
+    return result;
+  }
+
+  void draw(const objects::Scene& scene, const std::vector<objects::PlacedPoster>* posters,
+            const core::DrawRequest& request, bool is_exact, std::span<const std::uint8_t> only,
+            core::Frame& frame, core::DrawResult& result) {
     core::Certificate& certificate = result.certificate;
     core::DrawRequest for_planet = request;
     paging::fit_to_planet(for_planet.settings, planet_->meta());
     const paging::GroundLight light(shader_, surface_,
                                     paging::shading_params(for_planet.settings, request.sun,
                                                            planet_->meta().finest_image_level >= 0, nullptr));
-    const objects::ComposedObjects drawn =
-        objects::compose(scene, {for_planet, planet_->radius_m(), &light},
-                         objects::level_rule(for_planet, is_exact), pool_, frame, only);
+    const objects::ComposedObjects drawn = objects::compose(
+        scene, {for_planet, planet_->radius_m(), &light}, objects::level_rule(for_planet, is_exact), pool_,
+        frame, only, posters == nullptr ? std::span<const objects::PlacedPoster>() : *posters);
     result.clear_of_objects_m = drawn.clear_m;
     result.shows_see_through = drawn.is_see_through;
     certificate.objects = {drawn.objects, drawn.geometric_error_m, drawn.screen_space_error_px};
@@ -123,14 +181,23 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
     if (!has_objects(request)) return ground_->draw(request);
     const PlacedScene placed = pass().scene(request);
     pass().note_cuts(placed, request);
+    if (!request.want_range && request.want_colour) {
+      if (std::optional<core::DrawResult> dome = pass().draw_dome(placed, request)) {
+        core::apply_gamma(dome->frame.colour, request.settings.gamma);
+        if (!request.want_rough_range) dome->frame.range_m = {};
+        dome->stats.bytes_resident += static_cast<std::int64_t>(pass().bytes());
+        return std::move(*dome);
+      }
+    }
     core::DrawRequest below = ground_request(request, placed);
     if (request.paging.next && has_objects(*request.paging.next))
       below.paging.next =
           std::make_shared<const core::DrawRequest>(ground_request(*request.paging.next, placed));
     core::DrawResult result = ground_->draw(below);
     if (!result.certificate.is_below_ground && !result.frame.range_m.empty()) {
-      pass().draw(drawn_objects(placed, request), within_triangle_limit(request, result.certificate),
-                  is_exact(request), {}, result.frame, result);
+      pass().draw(drawn_objects(placed, request), placed.posters.get(),
+                  within_triangle_limit(request, result.certificate), is_exact(request), {}, result.frame,
+                  result);
     }
     core::apply_gamma(result.frame.colour, request.settings.gamma);
     if (!request.want_range && !request.want_rough_range) result.frame.range_m = {};
@@ -181,7 +248,8 @@ class ObjectPixelRenderer : public ObjectRenderer<core::PixelRenderer> {
     const PlacedScene placed = pass().scene(request);
     core::DrawResult result = ground_->draw_pixels(ground_request(request, placed), wanted, frame);
     if (!result.certificate.is_below_ground)
-      pass().draw(drawn_objects(placed, request), request, is_exact(request), wanted.is_wanted, frame, result);
+      pass().draw(drawn_objects(placed, request), placed.posters.get(), request, is_exact(request),
+                  wanted.is_wanted, frame, result);
     return result;
   }
 };

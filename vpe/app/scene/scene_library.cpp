@@ -8,6 +8,7 @@
 #include "objects/files/model_file.h"
 #include "objects/files/model_references.h"
 #include "objects/files/volume_model_file.h"
+#include "objects/posters/kiosk.h"
 #include "objects/scene/scatter.h"
 #include "objects/scene/track.h"
 #include "objects/sticks/stick_file.h"
@@ -114,10 +115,36 @@ void SceneLibrary::read(const std::string& file) {
     names_.assign(1, "");
   }
   for (const objects::ModelEntry& entry : entries_.models) models.push_back(model(entry));
+  read_kiosks(is_known, models);
+  if (images_.has_changed()) standing_.reset();
   if (models != models_) standing_.reset();
   models_ = std::move(models);
   file_ = file;
   stamp_ = stamp;
+}
+
+void SceneLibrary::read_kiosks(bool is_known, objects::Scene::Models& models) {
+  const bool is_same = std::ranges::all_of(
+      hotspots_, [](const auto& file) { return base::file_stamp(file.first) == file.second; });
+  if (!is_known || !is_same) {
+    standing_.reset();
+    stamp_.reset();  // until all are read
+    hotspots_.clear();
+    for (const objects::KioskEntry& kiosk : entries_.kiosks) {
+      if (!kiosk.hotspots.empty()) hotspots_.emplace_back(kiosk.hotspots, base::file_stamp(kiosk.hotspots));
+    }
+    kiosks_ = kiosk_places(entries_, surface_.planet_radius_m());
+  }
+  if (kiosks_.empty()) return;
+  if (!kiosk_) {
+    objects::Model::Level level;
+    level.mesh = objects::make_kiosk();
+    level.tree = objects::TriangleTree(level.mesh);
+    std::vector<objects::Model::Level> levels;
+    levels.push_back(std::move(level));
+    kiosk_ = std::make_shared<const objects::Model>("kiosk", std::move(levels));
+  }
+  models.push_back(kiosk_);
 }
 
 objects::GroundRadius SceneLibrary::ground(double exaggeration) const {
@@ -156,6 +183,14 @@ void SceneLibrary::place_standing(double exaggeration) {
         standing.interest.push_back(region_around(placing.place, size_m, entry.interest_levels));
     }
   }
+  for (const KioskPlace& kiosk : kiosks_)
+    standing.instances.push_back(place(kiosk.placing, models_.size() - 1, name_index(kiosk.name)).first);
+  if (!entries_.posters.empty()) {
+    std::vector<objects::PlacedPoster> posters;
+    for (const objects::PosterEntry& entry : entries_.posters)
+      posters.push_back(images_.placed(entry, planet_radius_m, radius_m));
+    standing.posters = std::make_shared<const std::vector<objects::PlacedPoster>>(std::move(posters));
+  }
   std::vector<objects::RockModel> rocks;
   for (const auto& m : models_)
     rocks.push_back({2 * static_cast<double>(m->ball().radius_m), glm::dvec3(m->ball().centre_m)});
@@ -181,6 +216,7 @@ PlacedScene SceneLibrary::with_parts(std::vector<objects::Instance> instances,
   PlacedScene placed;
   placed.interest = std::move(interest);
   placed.parts = standing_->parts;
+  placed.posters = standing_->posters;
   placed.ground_parts = standing_->ground_parts;
   if (standing_->added.empty()) {
     placed.apart = std::make_shared<const objects::Scene>(models_, std::move(instances), names_);
@@ -232,8 +268,8 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
   if (!standing_ || standing_->exaggeration != exaggeration) place_standing(exaggeration);
   const bool has_tracks = tracks != nullptr && !tracks->empty();
   if (standing_->scene && !has_tracks)
-    return {standing_->scene, standing_->interest, false,
-            standing_->apart, standing_->parts,    standing_->ground_parts};
+    return {standing_->scene,        standing_->interest, false, standing_->apart, standing_->parts,
+            standing_->ground_parts, standing_->posters};
   std::vector<objects::Instance> instances = standing_->instances;
   std::vector<core::InterestRegion> interest = standing_->interest;
   std::vector<objects::PathEntry> paths = entries_.paths;
@@ -259,7 +295,7 @@ PlacedScene SceneLibrary::scene(const std::string& file, double exaggeration, do
 std::vector<std::string> SceneLibrary::take_notes() { return std::exchange(notes_, {}); }
 
 std::size_t SceneLibrary::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = images_.bytes();
   for (const auto& m : models_) sum += m->bytes();
   if (standing_)
     sum += (standing_->instances.capacity() + standing_->added.capacity()) * sizeof(objects::Instance);

@@ -17,7 +17,9 @@
 #include "objects/scene/place.h"
 #include "objects/scene/scene.h"
 #include "paging/surface/surface.h"
+#include "vpe/app/scene/kiosk_places.h"
 #include "vpe/app/scene/placed_parts.h"
+#include "vpe/app/scene/poster_images.h"
 #include "vpe/base/file.h"
 #include "vpe/core/interest.h"
 #include "vpe/core/object_track.h"
@@ -34,6 +36,8 @@ struct PlacedScene {
   std::shared_ptr<const PlacedParts> parts;  // of the ground; null: none
   std::shared_ptr<const core::GroundParts>
       ground_parts;  // the same; the same pointer as long as they are the same
+  // Images in the world; null: none.
+  std::shared_ptr<const std::vector<objects::PlacedPoster>> posters;
 };
 
 // Returns the name of an instance, or that of its model if it has none; never "".
@@ -80,7 +84,8 @@ class SceneLibrary {
     std::shared_ptr<const PlacedParts> parts;
     std::shared_ptr<const core::GroundParts> ground_parts;
     std::vector<core::InterestRegion> interest;
-    std::vector<Begin> begins;                    // of SceneFile::objects
+    std::vector<Begin> begins;  // of SceneFile::objects
+    std::shared_ptr<const std::vector<objects::PlacedPoster>> posters;
     std::shared_ptr<const objects::Scene> scene;  // null where others move
     std::shared_ptr<const objects::Scene> apart;
   };
@@ -90,6 +95,8 @@ class SceneLibrary {
   std::shared_ptr<const objects::Model> volume(const std::string& name, const objects::VolumeFormula& formula);
   objects::GroundRadius ground(double exaggeration) const;
   std::uint32_t name_index(const std::string& name);
+  // Reads kiosks and their model where that is new.
+  void read_kiosks(bool is_known, objects::Scene::Models& models);
   void place_standing(double exaggeration);
   // Returns the scene of instances, and with what is added to the ground.
   PlacedScene with_parts(std::vector<objects::Instance> instances,
@@ -107,6 +114,10 @@ class SceneLibrary {
   std::vector<std::string> names_{""};
   std::map<std::filesystem::path, KnownModel> known_;
   std::map<std::string, KnownVolume> volumes_;  // by formula, by name
+  std::shared_ptr<const objects::Model> kiosk_;
+  std::vector<KioskPlace> kiosks_;
+  std::vector<std::pair<std::filesystem::path, std::optional<base::FileStamp>>> hotspots_;
+  PosterImages images_;
   std::optional<Standing> standing_;
   std::vector<std::string> notes_;
 };
