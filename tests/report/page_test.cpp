@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "vpe/report/axis.h"
+#include "vpe/report/histogram.h"
 #include "vpe/report/page.h"
 
 namespace vpe::report {
@@ -132,6 +133,62 @@ TEST(Page, IsOneFileAndEscapesText) {
   }
 }
 
+Histogram small_histogram() {
+  return {"Slopes & more",
+          "degrees",
+          "%",
+          "half < 2",
+          {{0, 1, 30, ""}, {1, 2, 70, "many"}, {2, 3, std::nan(""), ""}},
+          {{0.5, "50 %"}, {0.6, "60 %"}, {0.7, "70 %"}}};
+}
+
+TEST(Histogram, BarsStandOnTheAxis) {
+  pugi::xml_document document;
+  const std::string svg = to_svg(small_histogram());
+  ASSERT_TRUE(document.load_string(svg.c_str())) << svg;
+  const pugi::xml_node root = document.child("svg");
+  EXPECT_EQ(std::string(root.child("title").text().get()), "Slopes & more");
+  EXPECT_EQ(std::string(root.child("desc").text().get()), "half < 2");
+  const auto bars = root.select_nodes("rect");
+  ASSERT_EQ(bars.size(), 2U);
+  const auto number = [&](std::size_t bar, const char* name) {
+    return bars[bar].node().attribute(name).as_double();
+  };
+  EXPECT_NEAR(number(0, "y") + number(0, "height"), number(1, "y") + number(1, "height"), 0.02);
+  EXPECT_NEAR(number(0, "height") / number(1, "height"), 3.0 / 7, 0.001);
+  EXPECT_EQ(std::string(bars[1].node().child("title").text().get()), "many");
+  EXPECT_EQ(root.select_nodes("line[@stroke-dasharray]").size(), 3U);
+  EXPECT_EQ(root.select_nodes("text[.='50 %' or .='60 %']").size(), 2U);  // the third one has no room
+  EXPECT_EQ(to_svg(small_histogram()), svg);
+}
+
+TEST(Histogram, NothingIsAnEmptyPlot) {
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(to_svg(Histogram{}).c_str()));
+}
+
+TEST(Page, IsWellFormedAndHasHeadings) {
+  Page page{"A", {"text"}, {{"First", {}, {small_plot()}, {small_table()}}}};
+  page.sections[0].figures.push_back({"<b>bold</b>", "a < b"});
+  page.sections[0].histograms.push_back(small_histogram());
+  page.sections[0].terms.push_back({"x & y", "1 < 2"});
+  page.generator = "a \"b\"";
+  page.script = "document.title;";
+  pugi::xml_document document;
+  const std::string html = to_html(page);
+  ASSERT_TRUE(document.load_string(html.c_str(), pugi::parse_full)) << html;
+  const pugi::xml_node body = document.child("html").child("body");
+  EXPECT_EQ(body.select_nodes("//th[not(@scope)]").size(), 0U);
+  EXPECT_EQ(body.select_nodes("//tbody/tr/th[@scope='row']").size(), 3U);
+  EXPECT_EQ(std::string(body.select_node("//dl/dt").node().text().get()), "x & y");
+  EXPECT_EQ(std::string(body.select_node("//figure/b").node().text().get()), "bold");
+  EXPECT_EQ(std::string(body.select_node("//figcaption").node().text().get()), "a < b");
+  EXPECT_EQ(std::string(document.select_node("//meta[@name='generator']/@content").attribute().value()),
+            "a \"b\"");
+  EXPECT_EQ(std::string(body.child("script").text().get()), "document.title;");
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
 TEST(Page, ImagesAreInIt) {
   Page page;
   Section section;
@@ -143,7 +200,7 @@ TEST(Page, ImagesAreInIt) {
   page.sections.push_back(section);
   const std::string html = to_html(page);
   for (const char* base64 : {"Zm9vYmFy", "Zm9vYmE=", "Zm9vYg==", ""})
-    EXPECT_NE(html.find("src=\"data:image/png;base64," + std::string(base64) + "\">"), std::string::npos)
+    EXPECT_NE(html.find("src=\"data:image/png;base64," + std::string(base64) + "\"/>"), std::string::npos)
         << base64;
   EXPECT_NE(html.find("<figcaption>a &lt;foobar&gt;</figcaption>"), std::string::npos);
 }

@@ -7,6 +7,7 @@
 #include "vpe/app/panorama/commands.h"
 #include "vpe/app/picture/commands.h"
 #include "vpe/app/planet/commands.h"
+#include "vpe/app/planet/info/commands.h"
 #include "vpe/app/report/commands.h"
 #include "vpe/app/scene/commands.h"
 #include "vpe/app/surface/commands.h"

@@ -11,6 +11,7 @@ namespace vpe::report {
 struct Column {
   std::string name;  // in CSV and JSON: small letters, the unit at the end, such as "shift_p99_px"
   std::string meaning;
+  bool holds_figures = false;  // texts of the column are figures: pages align them as numbers
 };
 
 // std::monostate: not measured, or does not apply. Numbers that are not finite are written the same way.

@@ -96,6 +96,7 @@ const char* name_of(FileKind kind) {
     case FileKind::kPlanet: return "a planet file of vpe";
     case FileKind::kSticks: return "a model of sticks of vpe";
     case FileKind::kVolume: return "a volume of vpe";
+    case FileKind::kPlanetPage: return "a page of 'vpe info'";
   }
   return "";
 }
@@ -125,6 +126,8 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kPlanet: return paging::is_planet_file(file.string());
     case FileKind::kSticks: return head.starts_with("VPESTICK");
     case FileKind::kVolume: return head.starts_with("VPEVOLUM");
+    case FileKind::kPlanetPage:
+      return head.starts_with("<!DOCTYPE html>") && contains(head, "\"generator\" content=\"vpe info\"");
   }
   return false;
 }

@@ -22,10 +22,11 @@ enum class FileKind : std::uint8_t {
   kTraverse,   // flight with the comment that begins every traverse
   kFrame,      // PNG with this program's texts
   kManifest,
-  kVideo,   // MP4 of this program: its manifest or its segments lie beside it
-  kPlanet,  // planet file of this program, also a part of one
-  kSticks,  // model of sticks
-  kVolume,  // semi-transparent model
+  kVideo,       // MP4 of this program: its manifest or its segments lie beside it
+  kPlanet,      // planet file of this program, also a part of one
+  kSticks,      // model of sticks
+  kVolume,      // semi-transparent model
+  kPlanetPage,  // of vpe info
 };
 
 // Returns a name for messages, such as "a certificate of vpe".

@@ -1,4 +1,4 @@
-// Commands that make, join and describe planet files.
+// Commands that make, join and verify planet files.
 #pragma once
 
 namespace CLI {
@@ -13,7 +13,6 @@ struct Common;
 void add_build(CLI::App& program, Common& common);
 void add_patch(CLI::App& program, Common& common);
 void add_merge(CLI::App& program, Common& common);
-void add_info(CLI::App& program, Common& common);
 void add_verify(CLI::App& program, Common& common);
 
 }  // namespace vpe::app
