@@ -81,7 +81,7 @@ class OverlookWindowTest : public WindowTest<OverlookWindow> {
   void open(const fs::path& json, const Opening& how) {
     const app::PanoramaFiles files{json.string(), {}, {}};
     OverlookWindowSetup setup;
-    setup.view = app::overlook_setup(files, std::size_t{64} << 20, 2);
+    setup.view = app::overlook_setup(files, std::size_t{64} << 20, 2, graphics_);
     setup.view.look = how.look;
     setup.view.fov_deg = how.fov_deg;
     setup.view.stereo = how.stereo;
@@ -122,6 +122,7 @@ class OverlookWindowTest : public WindowTest<OverlookWindow> {
   Direction under(double x, double y) { return viewer().direction(x, y); }
 
   explore::Preferences preferences_;
+  app::OverlookGraphics graphics_ = app::OverlookGraphics::kAuto;
   std::function<std::optional<explore::PadState>()> pad_;
 };
 
@@ -348,6 +349,7 @@ TEST_F(OverlookWindowTest, PairsInEveryLayout) {
   base::write_file(folder_ / "ou.json", json.dump());
   Opening anaglyph;
   anaglyph.stereo = core::StereoLayout::kAnaglyph;
+  graphics_ = app::OverlookGraphics::kOff;  // which is exact
   open(folder_ / "ou.json", anaglyph);
   const auto drawn = panorama::open_tiled_image(folder_ / "ou.png", panorama::ImageFileFormat::kPng, {});
   const auto expected = [&] {
