@@ -1,4 +1,4 @@
-// What the tests of images in the world share: images of known colours, and places before a camera.
+// Images of known colours, and places before a camera, for the tests of images in the world.
 #pragma once
 
 #include <memory>

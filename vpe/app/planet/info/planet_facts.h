@@ -1,4 +1,4 @@
-// What a planet file states, as lines for people: `vpe info` prints them, and its page shows them.
+// Facts of a planet file as lines for people: `vpe info` prints them, and its page shows them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where each source of a planet's elevations decides the heights.
+// Areas in which each source of a planet decides the elevations.
 //
 // Typical usage:
 //   const SourceCoverage coverage = source_coverage(planet, budget_bytes, pool);
