@@ -327,15 +327,17 @@ TEST_F(InterfaceTest, EnterWithoutHotspotsIsNoError) {
 }
 
 TEST_F(InterfaceTest, TheModeOfMotionIsChosenOverTheView) {
+  extra_.display.clock = own_clock();
   open();
   window_->session().put({20, 10, 3000, 0, -20, 0});
   settle();
   for (const explore::MotionMode mode : explore::motion_modes().subspan(1)) {
     click(std::string(explore::to_string(mode)));
-    settle();
     EXPECT_EQ(window_->session().mode(), mode);
     EXPECT_NE(window_->state().message.find(explore::to_string(mode)), std::string::npos)
         << window_->state().message;
+    settle();
+    EXPECT_EQ(window_->session().mode(), mode);
   }
   EXPECT_LT(window_->session().height_m(), 5);  // drive is on the ground
 }

@@ -5,6 +5,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -29,16 +30,27 @@ class WindowTest : public testing::Test {
     settle();
   }
 
+  // Runs one iteration of the event loop. A clock of the test's own goes on by a frame's time.
+  bool step() {
+    time_s_ += 0.01;
+    return window_->step(0.01);
+  }
+  // Returns a clock for DisplayOptions that only step() moves: what depends on speed of hands and on time
+  // between images is then the same on every machine.
+  std::function<double()> own_clock() {
+    return [this] { return time_s_; };
+  }
+
   // Runs the event loop until nothing moves, loads or waits.
   void settle() {
     for (int n = 0; n < 30'000; ++n) {
-      ASSERT_TRUE(window_->step(0.01));
+      ASSERT_TRUE(step());
       if (n > 5 && window_->is_at_rest()) return;
     }
     FAIL() << "the window does not come to rest";
   }
   void iterate(int count) {
-    for (int n = 0; n < count; ++n) ASSERT_TRUE(window_->step(0.01));
+    for (int n = 0; n < count; ++n) ASSERT_TRUE(step());
   }
 
   // Positions are in pixels of the window.
@@ -59,7 +71,7 @@ class WindowTest : public testing::Test {
   // Waits for a frame that shows the widget.
   bool waits_for(const std::string& label, bool is_there = true) {
     for (int n = 0; n < 5'000 && window_->widgets().places().contains(label) != is_there; ++n)
-      if (!window_->step(0.01)) return false;
+      if (!step()) return false;
     return window_->widgets().places().contains(label) == is_there;
   }
   void click(const std::string& label) {
@@ -83,6 +95,7 @@ class WindowTest : public testing::Test {
     iterate(3);
   }
 
+  double time_s_ = 0;  // of own_clock()
   test_support::TempDir folder_;
   Screen screen_{2600, 1500};
   std::unique_ptr<Robot> robot_;

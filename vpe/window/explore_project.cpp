@@ -1,6 +1,5 @@
 // Drawings and project of the explore window.
 #include <algorithm>
-#include <chrono>
 #include <exception>
 
 #include "vpe/base/file.h"

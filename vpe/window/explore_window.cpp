@@ -17,8 +17,6 @@ namespace vpe::window {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kIdle_s = 0.5;
 constexpr double kMessage_s = 6;  // for which it is shown
@@ -27,8 +25,6 @@ constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 constexpr double kKeepSession_s = 2;
 constexpr double kAskJobs_s = 0.25;
 constexpr double kHoverFrame_s = 0.1;  // while only the cursor moves over the view
-
-double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 }  // namespace
 
@@ -59,8 +55,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       opener_(setup_.open_planet, [] { Display::wake(); }),
       finer_(setup_.make_finer, [] { Display::wake(); }),
       first_fov_deg_(setup_.session.fov_deg),
-      begun_(Clock::now()),
-      last_step_(begun_),
+      begun_s_(display_.now_s()),
+      last_step_s_(begun_s_),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   swipe_.set_on(setup_.planet != nullptr && setup_.planet->earlier() != nullptr);
   state_.drawn_by = setup_.drawn_by;
@@ -105,7 +101,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
 
 ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
 
-double ExploreWindow::now_s() const { return seconds(Clock::now() - begun_); }
+double ExploreWindow::now_s() const { return display_.now_s() - begun_s_; }
 
 void ExploreWindow::run() {
   while (step(kIdle_s) && next_planet_ == nullptr) {
@@ -132,7 +128,7 @@ bool ExploreWindow::shows_final_image() const {
 
 // Returns how long an iteration may wait for events. A finished image is an event too.
 double ExploreWindow::event_wait_s(bool moves, double rest_s) const {
-  const double since_s = seconds(Clock::now() - last_step_);
+  const double since_s = display_.now_s() - last_step_s_;
   const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
   if (guide_.inside() != nullptr) return !guide_.inside()->is_at_rest() || frames_due_ > 0 ? pause_s : rest_s;
   if (frames_due_ > 0) return std::max(pause_s, next_frame_s_ - now_s());
@@ -201,10 +197,10 @@ bool ExploreWindow::step(double wait_s) {
   follow_caught_cursor();
   display_.show_hand(session_.mouse_use() == explore::MouseUse::kHold || flight_.holds_pose() ||
                      drawing_.sketch().held().has_value() || objects_.holds() || reliefs_.holds());
-  const auto now = Clock::now();
+  const double step_s = display_.now_s();
   // The time of a rest does not count as motion.
-  const double dt_s = busy ? seconds(now - last_step_) : 0.0;
-  last_step_ = now;
+  const double dt_s = busy ? step_s - last_step_s_ : 0.0;
+  last_step_s_ = step_s;
   take_planets();
   if (shows_progress() && now_s() - jobs_asked_s_ >= kAskJobs_s) update_jobs();
   const double shown_s = now_s() - state_.message_since_s;

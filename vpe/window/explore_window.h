@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -400,8 +399,8 @@ class ExploreWindow {
   std::shared_ptr<const paging::PlanetFile> next_planet_;
   bool saves_image_ = false;  // once the final image is there
   double first_fov_deg_ = 50;
-  std::chrono::steady_clock::time_point begun_;
-  std::chrono::steady_clock::time_point last_step_;
+  double begun_s_;  // of the display's clock
+  double last_step_s_;
   std::deque<double> image_times_s_;
   int frames_due_ = 3;
   std::optional<double> tip_at_s_;  // when a tooltip is due

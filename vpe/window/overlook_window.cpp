@@ -10,15 +10,12 @@ namespace vpe::window {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using explore::ActionKind;
 
 constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kPoll_s = 1.0 / 60;   // of devices that send no events
 constexpr double kImageWait_s = 0.1;   // limit of waiting for an image in one iteration
 constexpr int kFramesAfterChange = 3;  // ImGui settles within these
-
-double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 OverlookSetup preferred(OverlookSetup setup, const explore::Preferences& preferences) {
   setup.budget_ms = preferences.draw_budget_ms;
@@ -38,20 +35,20 @@ OverlookWindow::OverlookWindow(OverlookWindowSetup setup)
       display_(preferred(setup.display, preferences_)),
       devices_(preferences_, std::move(setup.devices)),
       view_(preferred(std::move(setup.view), preferences_)),
-      begun_(Clock::now()),
-      last_step_(begun_),
+      begun_s_(display_.now_s()),
+      last_step_s_(begun_s_),
       frames_due_(kFramesAfterChange) {
   for (const std::string& error : devices_.errors()) device_error_ = error;
   lay_out();
 }
 
-double OverlookWindow::now_s() const { return seconds(Clock::now() - begun_); }
+double OverlookWindow::now_s() const { return display_.now_s() - begun_s_; }
 
 bool OverlookWindow::step(double wait_s) {
   const bool busy = !is_at_rest();
   double longest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
   if (tip_at_s_) longest_s = std::min(longest_s, std::max(*tip_at_s_ - now_s(), 0.001));
-  const double pause_s = std::max(0.0, kShortestFrame_s - seconds(Clock::now() - last_step_));
+  const double pause_s = std::max(0.0, kShortestFrame_s - (display_.now_s() - last_step_s_));
   const std::vector<Event> events = display_.events(busy ? pause_s : longest_s);
   if (display_.should_close()) return false;
   if (tip_at_s_ && now_s() >= *tip_at_s_) {
@@ -72,10 +69,10 @@ bool OverlookWindow::step(double wait_s) {
   // ImGui updates WantCaptureMouse with the next frame, when the cursor may rest already.
   if (cursor_ && captured != was_captured_) view_.handle(*cursor_, captured);
   was_captured_ = captured;
-  const auto now = Clock::now();
+  const double step_s = display_.now_s();
   // The time of a rest does not count as motion.
-  const double dt_s = busy ? seconds(now - last_step_) : 0.0;
-  last_step_ = now;
+  const double dt_s = busy ? step_s - last_step_s_ : 0.0;
+  last_step_s_ = step_s;
   const DeviceReading reading = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
   for (const explore::Action& action : reading.actions) act(action);
   view_.advance(reading.controls, reading.look, dt_s);

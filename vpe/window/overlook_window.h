@@ -1,7 +1,6 @@
 // The window of `vpe overlook`: a panorama and a bar with its values.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -70,8 +69,8 @@ class OverlookWindow {
   double bar_height_ = 0;
   int width_ = 1;
   int height_ = 1;
-  std::chrono::steady_clock::time_point begun_;
-  std::chrono::steady_clock::time_point last_step_;
+  double begun_s_;  // of the display's clock
+  double last_step_s_;
   int frames_due_;
   std::optional<double> tip_at_s_;  // when a tooltip is due
   std::int64_t frames_ = 0;

@@ -33,7 +33,7 @@ TEST(SceneToml, MessagesNameLineValueAndWhatIsAllowed) {
       {"\nversion = 2", 2, "version: expected an integer in [1, 1], found 2"},
       {"version = 1.0", 1, "version: expected an integer in [1, 1], found 1"},
       {"version = 1\nmodle = 3", 2,
-       "unknown key \"modle\" in the file; keys are version, model, volume, object, scatter and path"},
+       "unknown key \"modle\" in the file; keys are version, model, volume, object, scatter, path, picture and kiosk"},
       {"version = 1\nmodel = 3", 2, "model: expected tables [[model]], found 3"},
       {"version = 1\nmodel = [1]", 2, "model: expected tables [[model]], found 1"},
       {"version = 1\n[model]", 2, "model: expected tables [[model]], found a table"},

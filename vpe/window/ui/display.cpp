@@ -22,12 +22,15 @@
 namespace vpe::window {
 
 struct Display::State {
+  std::function<double()> clock;
   std::vector<Event> events;
   double to_pixels = 1;  // from screen coordinates
   double x = 0;
   double y = 0;
   std::vector<int> pressed;  // keys since the last frame
   std::vector<int> held;     // keys that are down for one frame more than they were
+
+  double now_s() const { return clock ? clock() : glfwGetTime(); }
 };
 
 namespace {
@@ -45,7 +48,7 @@ void add(GLFWwindow* window, Event event) {
   Display::State& state = state_of(window);
   event.x = state.x;
   event.y = state.y;
-  event.time_s = glfwGetTime();
+  event.time_s = state.now_s();
   state.events.push_back(std::move(event));
 }
 
@@ -164,6 +167,7 @@ void check_display(const DisplayOptions& options) {
 }
 
 Display::Display(const DisplayOptions& options) : state_(std::make_unique<State>()) {
+  state_->clock = options.clock;
   if (glfwInit() != GLFW_TRUE) fail(options);
   handle_lost_display();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -241,6 +245,8 @@ std::pair<int, int> Display::size() const {
   glfwGetWindowSize(window_, &width, &height);
   return {width, height};
 }
+
+double Display::now_s() const { return state_->now_s(); }
 
 bool Display::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 void Display::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -27,9 +28,10 @@ struct DisplayOptions {
   std::string title = "vpe";
   int width = 1280;  // of the window, screen coordinates
   int height = 720;
-  bool scales_size = false;  // enlarge the window on a dense monitor
-  double scale = 0;          // of text and panels; 0: the monitor's scale
-  std::string instead;       // alternative to a window, for messages
+  bool scales_size = false;       // enlarge the window on a dense monitor
+  double scale = 0;               // of text and panels; 0: the monitor's scale
+  std::string instead;            // alternative to a window, for messages
+  std::function<double()> clock;  // returns seconds and never goes back; empty: time since GLFW was initialised
 };
 
 // Throws DisplayError if there is no display. Call it before other work for a window.
@@ -57,7 +59,7 @@ struct Event {
       0;  // motion of the cursor since the last kMove, framebuffer pixels; while it is caught, without end
   double dy = 0;
   double scroll = 0;
-  double time_s = 0;  // since GLFW was initialised
+  double time_s = 0;  // by Display::now_s()
   std::vector<std::string> files;
 };
 
@@ -76,6 +78,8 @@ class Display {
   Display& operator=(const Display&) = delete;
 
   GLFWwindow* handle() const { return window_; }
+  // Returns the time of the clock of DisplayOptions, seconds.
+  double now_s() const;
   double scale() const { return scale_; }
   // Returns the scale of DisplayOptions, or the monitor's.
   double usual_scale() const { return usual_scale_; }
