@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,7 +27,7 @@ inline std::shared_ptr<const paging::PlanetFile> planet() {
 
 class ExploreWindowTest : public WindowTest<ExploreWindow> {
  protected:
-  void open(int width = 960, int height = 540, core::Backend backend = core::Backend::kRay) {
+  void open(int width = 960, int height = 540, std::optional<core::Backend> backend = core::Backend::kRay) {
     ExploreSetup setup = std::exchange(extra_, {});
     setup.folder = folder_.path();
     setup.bookmarks = folder_ / "bookmarks";

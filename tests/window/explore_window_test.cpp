@@ -216,18 +216,24 @@ TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundShownThereAlsoInPairs) {
   const double half = screen.width;
   ASSERT_EQ(half, 315);
   for (const double left : {330.0, 330.0 + half}) {
+    const auto eye_view = [&] {
+      const double base_m = window_->drawn()->request.eye_base_m;
+      return core::eye_view(window_->session().view(), (left == 330 ? -0.5 : 0.5) * base_m, std::nullopt);
+    };
     const double x = left + half * 0.6;
     const double y = screen.height / 2.0;
     move(x, y);
     settle();
     const mars::Pose before = window_->session().pose();
-    const auto under = explore::ground_at(before, screen, {0.6 * screen.width, 0.5 * screen.height},
-                                          window_->session().ground());
-    ASSERT_TRUE(under.has_value());
+    const auto place = window_->session().place_at(eye_view(), {0.6 * screen.width, 0.5 * screen.height});
+    ASSERT_TRUE(place.has_value());
+    const glm::dvec3 up = mars::direction(*place);
+    const glm::dvec3 under =
+        up * (window_->session().ground().radius_m + window_->session().ground().height_m(up));
     robot_->wheel(1);
     iterate(5);
     settle();
-    const core::Projected now = core::project(window_->session().view(), *under);
+    const core::Projected now = core::project(eye_view(), under);
     EXPECT_NEAR(now.xy.x, 0.6 * screen.width, 0.5) << left;
     EXPECT_NEAR(now.xy.y, 0.5 * screen.height, 0.5) << left;
     EXPECT_LT(window_->session().pose().alt_m, before.alt_m);

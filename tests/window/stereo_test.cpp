@@ -189,6 +189,45 @@ TEST_F(StereoTest, MarksAreInTheImageOfEachEye) {
 }
 
 // The size in a log is that of both images together, as in films.
+// The ground under the cursor is held, zoomed to and flown to in the image of the eye that the cursor is in.
+TEST_F(StereoTest, TheMouseActsInTheImageOfTheEyeItIsIn) {
+  open(1290, 540);
+  const double ground_m = window_->session().ground().height_m(mars::direction({20, 10}));
+  window_->session().put({20, 10, ground_m + 3000, 30, -35, 0});
+  choose("side by side");
+  for (const int eye : {0, 1}) {
+    const ViewArea area = ImageLayout{{330, 0, 960, 540}, StereoLayout::kSideBySide}.eye_area(eye);
+    const glm::dvec2 from{area.x + 160, 300};
+    move(from.x, from.y);
+    settle();
+    const auto held =
+        window_->session().place_at(eyes()[static_cast<std::size_t>(eye)], from - glm::dvec2(area.x, area.y));
+    ASSERT_TRUE(held);
+    const glm::dvec3 up = mars::direction(*held);
+    const glm::dvec3 held_m =
+        up * (window_->session().ground().radius_m + window_->session().ground().height_m(up));
+    const auto off_px = [&](glm::dvec2 cursor) {
+      const core::View view = eyes()[static_cast<std::size_t>(eye)];
+      return glm::length(core::project(view, held_m).xy + glm::dvec2(area.x, area.y) - cursor);
+    };
+    EXPECT_LT(off_px(from), 1e-3) << eye;
+    // Between the eyes it is elsewhere, so that holding it there would not do.
+    const glm::dvec2 middle = core::project(window_->session().view(), held_m).xy + glm::dvec2(area.x, area.y);
+    EXPECT_GT(glm::length(middle - from), 3) << eye;
+    robot_->press();
+    iterate(2);
+    for (int n = 1; n <= 6; ++n) move(from.x + 12 * n, from.y + 15 * n);
+    settle();
+    EXPECT_LT(off_px(from + glm::dvec2(72, 90)), 0.05) << eye;
+    robot_->release();
+    settle();
+    robot_->wheel(2);
+    iterate(5);
+    settle();
+    EXPECT_LT(off_px(from + glm::dvec2(72, 90)), 3) << eye;
+  }
+}
+
 TEST_F(StereoTest, TheLogHasTheSizeOfTheWholeView) {
   open();
   choose("side by side");

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ double resident_mb() {
   return 0;
 }
 
-class LongWander : public ExploreWindowTest {};
+// The parameter is the backend; none: the window chooses.
+class LongWander : public ExploreWindowTest,
+                   public testing::WithParamInterface<std::optional<core::Backend>> {};
 
-TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
+TEST_P(LongWander, FramesStayShortAndMemoryFlat) {
   using Clock = std::chrono::steady_clock;
   const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   const char* text = std::getenv("VPE_WANDER_S");
@@ -31,7 +34,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   if (path != nullptr) planet_ = paging::PlanetFile::open(path);
   ASSERT_TRUE(extra_.session.settings.set("lod.tolerance", "2").empty());
   ASSERT_TRUE(extra_.session.settings.set("lod.frame_ms", "40").empty());
-  open(1280, 720, core::Backend::kPolygon);
+  open(1280, 720, GetParam());
 
   test_support::Random random(20261122);
   std::vector<double> frames_ms;
@@ -115,6 +118,11 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   const double half = memory_mb[memory_mb.size() / 2];
   EXPECT_LT(memory_mb.back(), half * 1.1 + 16);
 }
+
+INSTANTIATE_TEST_SUITE_P(LongBackends, LongWander,
+                         testing::Values(std::optional(core::Backend::kPolygon),
+                                         std::optional<core::Backend>()),
+                         [](const auto& of) -> std::string { return of.param ? "polygon" : "auto"; });
 
 }  // namespace
 }  // namespace vpe::window

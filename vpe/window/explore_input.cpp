@@ -47,12 +47,11 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kPress:
     case Event::Kind::kRelease: handle_button(event); break;
     case Event::Kind::kMove:
-      if (session_.mouse_use() != explore::MouseUse::kNone)
-        session_.drag(image_layout().xy_of(held_eye_, cursor_), event.time_s);
+      if (session_.mouse_use() != explore::MouseUse::kNone) drag(event.time_s);
       break;
     case Event::Kind::kScroll:
       if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
-        scroll(*xy, event.scroll);
+        scroll(middle_xy(image_layout().eye_at(cursor_), *xy), event.scroll);
       break;
     case Event::Kind::kFocusLost:
     case Event::Kind::kDrop: break;  // handled above
@@ -152,6 +151,33 @@ void ExploreWindow::follow_caught_cursor() {
   cursor_ = {area.x + area.width / 2, area.y + area.height / 2};
 }
 
+// Returns where the ground that an eye of a pair sees at `xy` is in the image between the eyes, for which the session
+// takes positions; `xy` itself where there is no ground or no pair.
+glm::dvec2 ExploreWindow::middle_xy(int eye, glm::dvec2 xy) const {
+  if (image_layout().eyes() == 1) return xy;
+  const std::optional<mars::LonLat> place = session_.place_at(eye_image(eye).view, xy);
+  if (!place) return xy;
+  const glm::dvec3 up = mars::direction(*place);
+  return xy + parallax_px(eye, up * (session_.ground().radius_m + session_.ground().height_m(up)));
+}
+
+// Returns by how much a point is farther right in the image between the eyes than in that of an eye, and lower.
+glm::dvec2 ExploreWindow::parallax_px(int eye, const glm::dvec3& point_m) const {
+  return core::project(session_.view(), point_m).xy - core::project(eye_image(eye).view, point_m).xy;
+}
+
+void ExploreWindow::drag(double time_s) {
+  constexpr int kRounds = 3;  // each shrinks the error by the relative change of the distance
+  const glm::dvec2 xy = image_layout().xy_of(held_eye_, cursor_);
+  const bool holds = session_.mouse_use() == explore::MouseUse::kHold && session_.held_m();
+  if (image_layout().eyes() > 1 && holds)
+    for (int n = 0; n < kRounds; ++n) {
+      held_parallax_px_ = parallax_px(held_eye_, *session_.held_m());
+      session_.drag(xy + held_parallax_px_);
+    }
+  session_.drag(xy + held_parallax_px_, time_s);
+}
+
 void ExploreWindow::handle_button(const Event& event) {
   if (event.kind == Event::Kind::kRelease) {
     session_.release(event.time_s);
@@ -161,8 +187,9 @@ void ExploreWindow::handle_button(const Event& event) {
   if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
   panel_focus_.leave();
   welcome_.dismiss();
-  const glm::dvec2 xy = *over;
   held_eye_ = image_layout().eye_at(cursor_);
+  const glm::dvec2 xy = middle_xy(held_eye_, *over);
+  held_parallax_px_ = xy - *over;
   if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
     const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
                        glm::length(last_press_->second - cursor_) < kDoubleClick_px;

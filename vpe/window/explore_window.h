@@ -240,6 +240,9 @@ class ExploreWindow {
   // explore_input.cpp:
   void handle_button(const Event& event);
   void scroll(glm::dvec2 xy, double notches);
+  void drag(double time_s);
+  glm::dvec2 middle_xy(int eye, glm::dvec2 xy) const;
+  glm::dvec2 parallax_px(int eye, const glm::dvec3& point_m) const;
   bool handle_swipe(const Event& event);
   std::string swipe(explore::ActionKind kind);
   bool handle_caught(const Event& event);
@@ -387,6 +390,7 @@ class ExploreWindow {
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
   int held_eye_ = 0;                                         // in whose image the button was pressed
+  glm::dvec2 held_parallax_px_{0};                           // from that image to the one between the eyes
   Devices devices_;
   std::optional<DeviceStates> shown_devices_;  // in the last frame, where it showed them
   explore::ViewHistory history_;
