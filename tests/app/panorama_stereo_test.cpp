@@ -143,6 +143,19 @@ TEST_F(StereoPanorama, TheRightEyeMayBeCarried) {
                                                      vpe::core::StereoLayout::kAnaglyph);
     EXPECT_LT(difference(vpe::core::read_image(dir_ / "mixed.png"), mixed), 0.02);
 
+    // Side by side, the right image is carried from columns that were kept.
+    const auto side_by_side =
+        parse_json(make("beside.png", with({"--stereo", "sbs", "--stereo-method", "reproject"})).out);
+    const RgbImage beside = vpe::core::read_image(dir_ / "beside.png");
+    ASSERT_EQ(beside.width, 2 * a.width);
+    EXPECT_TRUE(part_of(beside, 0, 0, a.width, height).pixels == part_of(b, 0, 0, a.width, height).pixels);
+    EXPECT_LT(difference(part_of(beside, a.width, 0, a.width, height), carried_right), 0.02);
+    EXPECT_NEAR(side_by_side["shift_bound_px"].get<double>(), carried["shift_bound_px"].get<double>(), 0.1);
+    const Result from_recipe =
+        vpe({"panorama", "--from-sidecar", "beside.json", "-o", "again.png", "-q", "--threads", "3"});
+    ASSERT_EQ(from_recipe.exit_code, 0) << from_recipe.err;
+    EXPECT_TRUE(read_text(dir_ / "again.png") == read_text(dir_ / "beside.png"));
+
     const Result again =
         vpe({"panorama", "--from-sidecar", "carried.json", "-o", "again.png", "-q", "--threads", "3"});
     ASSERT_EQ(again.exit_code, 0) << again.err;
@@ -155,7 +168,6 @@ TEST_F(StereoPanorama, TheRightEyeMayBeCarried) {
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_TRUE(says(result.err, reasons)) << result.err;
   };
-  fails({"--stereo", "sbs", "--stereo-method", "reproject", "--set", "samples=1"}, {"side by side", "ou"});
   fails({"--stereo", "ou", "--stereo-method", "reproject", "--set", "samples=4"}, {"samples", "full"});
   fails({"--stereo", "ou", "--stereo-method", "reproject", "--set", "rays.mode=discrete"},
         {"rays.vertical", "full"});
@@ -180,9 +192,15 @@ TEST_F(StereoPanorama, TheBaseIsAThirtiethOfTheNearestAndKept) {
 
 TEST_F(StereoPanorama, FromItsSidecarAndResumedItIsTheSame) {
   const Words wide{"--width", "9000", "--elevation=-3.2,-0.8", "--eye-base", "300"};
-  for (const std::string layout : {"sbs", "ou", "anaglyph"}) {
+  const std::vector<std::pair<std::string, Words>> pairs{
+      {"sbs", {}},
+      {"ou", {}},
+      {"anaglyph", {}},
+      {"carried", {"--stereo", "sbs", "--stereo-method", "reproject", "--set", "samples=1"}}};
+  for (const auto& [layout, method] : pairs) {
     Words more = wide;
-    more.insert(more.end(), {"--stereo", layout});
+    if (method.empty()) more.insert(more.end(), {"--stereo", layout});
+    more.insert(more.end(), method.begin(), method.end());
     make("p.tif", more);
     const std::string bytes = read_text(dir_ / "p.tif");
     const Result again =

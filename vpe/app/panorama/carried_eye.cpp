@@ -72,6 +72,69 @@ void copy_into(core::Frame& frame, const Piece& piece, const core::Frame& image)
   }
 }
 
+namespace {
+
+std::int64_t end_of(const Strip& strip) { return strip.x + strip.width; }
+
+// Copies columns [from, from + count) of an image to a place in a wider one of the same height.
+void copy_columns(const core::Frame& image, std::int64_t from, std::int64_t count, core::Frame& wide,
+                  std::int64_t to) {
+  for (int y = 0; y < image.height; ++y) {
+    const std::size_t begin =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(from);
+    const std::size_t out =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(wide.width) + static_cast<std::size_t>(to);
+    std::copy_n(&image.colour[begin], count, &wide.colour[out]);
+    std::copy_n(&image.range_m[begin], count, &wide.range_m[out]);
+  }
+}
+
+}  // namespace
+
+core::Frame LeftColumns::join(const std::vector<Strip>& strips, const Draw& draw) {
+  core::Frame all;
+  for (const Strip& strip : strips) all.width += strip.width;
+  std::int64_t at = 0;
+  for (const Strip& strip : strips) {
+    for (std::int64_t x = strip.x; x < end_of(strip);) {
+      const auto holds = [&](const Block& block) { return x >= block.strip.x && x < end_of(block.strip); };
+      auto found = std::ranges::find_if(blocks_, holds);
+      if (found == blocks_.end()) {
+        std::int64_t end = end_of(strip);
+        for (const Block& block : blocks_)
+          if (block.strip.x > x) end = std::min(end, block.strip.x);
+        const Strip missing{x, static_cast<int>(end - x)};
+        blocks_.push_back({missing, draw(missing)});
+        found = blocks_.end() - 1;
+      }
+      if (all.colour.empty()) {
+        all.height = found->frame.height;
+        all.colour.resize(static_cast<std::size_t>(all.width) * static_cast<std::size_t>(all.height));
+        all.range_m.resize(all.colour.size());
+      }
+      const std::int64_t count = std::min(end_of(strip), end_of(found->strip)) - x;
+      copy_columns(found->frame, x - found->strip.x, count, all, at);
+      x += count;
+      at += count;
+    }
+  }
+  return all;
+}
+
+void LeftColumns::keep(const std::vector<Strip>& wanted) {
+  std::erase_if(blocks_, [&](const Block& block) {
+    return std::ranges::none_of(wanted, [&](const Strip& strip) {
+      return strip.x < end_of(block.strip) && block.strip.x < end_of(strip);
+    });
+  });
+}
+
+std::int64_t LeftColumns::kept() const {
+  std::int64_t columns = 0;
+  for (const Block& block : blocks_) columns += block.strip.width;
+  return columns;
+}
+
 CarriedEye::CarriedEye(const panorama::PanoramaMap& map, const panorama::Viewpoint& viewpoint,
                        const panorama::EyePair& eyes)
     : map_(map), viewpoint_(viewpoint), eyes_(eyes), bands_(panorama::stereo_bands(map, eyes)) {

@@ -58,4 +58,30 @@ class CarriedEye {
   double nearest_m_ = 0;
 };
 
+// Keeps columns of the left eye's image between strips. Side by side, the left image is finished before most of the right
+// one is begun, and what the right one is carried from would be drawn twice. For one thread at a time.
+//
+// Typical usage:
+//   const core::Frame left = columns.join(eye.columns_for(strip), draw);
+//   columns.keep(wanted_later);
+class LeftColumns {
+ public:
+  using Draw = std::function<core::Frame(const panorama::Strip&)>;  // returns the colours and ranges of columns
+
+  // Returns the columns of all strips beside each other. Draws those that are not kept, and keeps them. Strips do not
+  // overlap and are not empty. Throws what `draw` throws.
+  core::Frame join(const std::vector<panorama::Strip>& strips, const Draw& draw);
+  // Drops what no column of these strips needs.
+  void keep(const std::vector<panorama::Strip>& wanted);
+  // Returns how many columns are kept.
+  std::int64_t kept() const;
+
+ private:
+  struct Block {
+    panorama::Strip strip;
+    core::Frame frame;
+  };
+  std::vector<Block> blocks_;  // without overlaps
+};
+
 }  // namespace vpe::app

@@ -5,13 +5,13 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/panorama/carried_eye.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/base/file.h"
@@ -86,9 +86,12 @@ int free_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int
   constexpr std::size_t kPieceBytes = 24;
   constexpr std::size_t kCarriedBytes = 16;  // colours, ranges and origins of both eyes
   constexpr int kLeast_mb = 64;
+  // Side by side, the columns of some strips are kept.
+  const std::size_t of_carried =
+      kCarriedBytes * (request.stereo && request.stereo->layout == core::StereoLayout::kSideBySide ? 3 : 1);
   const std::size_t pixel_bytes = sizeof(base::Rgb) * (plan.is_red_cyan ? 2 : 1) +
                                   (request.layers.empty() ? 0 : sizeof(float)) +
-                                  (request.stereo && request.stereo->carried_gap_px ? kCarriedBytes : 0);
+                                  (request.stereo && request.stereo->carried_gap_px ? of_carried : 0);
   const std::size_t held =
       static_cast<std::size_t>(plan.strips.front().width * plan.size.height_px) * pixel_bytes +
       static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
@@ -140,30 +143,70 @@ std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
   if (!strip) return std::nullopt;
   const auto figures = figures_from(strip->block(0));
   if (!figures) return std::nullopt;
-  figures_.add(*figures);
+  add_figures(n, *figures);
   ++kept_;
   return strip;
 }
 
 std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
+  if (request_.stereo && request_.stereo->carried_gap_px)
+    carrier_ = std::make_unique<CarriedEye>(plan_.map, viewpoint(), *request_.stereo);
   lock_ =
       std::make_unique<FolderLock>(strips_folder(request_.output), FolderLock::Use::kAlone, request_.output);
   remove_stale_strips(request_.output);
-  std::vector<panorama::StripFile> strips;
-  for (std::size_t n = 0; n < plan_.strips.size(); ++n) {
+  std::vector<std::optional<panorama::StripFile>> strips(plan_.strips.size());
+  const std::vector<std::size_t> turns = order();
+  for (std::size_t turn = 0; turn < turns.size(); ++turn) {
+    const std::size_t n = turns[turn];
     try {
       InterruptGuard::check();
-      auto kept = keep(n);
-      strips.push_back(kept ? std::move(*kept) : make(n, line, times));
+      strips[n] = keep(n);
+      if (!strips[n]) strips[n] = make(n, line, times);
+      if (!is_carried_beside()) continue;
+      std::vector<Strip> wanted;
+      for (std::size_t later = turn + 1; later < turns.size(); ++later)
+        std::ranges::copy(left_columns_for(plan_.strips[turns[later]]), std::back_inserter(wanted));
+      left_.keep(wanted);
     } catch (const Interrupted& e) {
-      throw Interrupted(e.signal(), std::string(e.what()) + ": " + std::to_string(strips.size()) + " of " +
+      throw Interrupted(e.signal(), std::string(e.what()) + ": " + std::to_string(kept_ + made_) + " of " +
                                         std::to_string(plan_.strips.size()) + " strips of " +
                                         request_.output.string() + " are kept; the same command continues");
     }
   }
   renderer_.reset();
   surface_.reset();
-  return strips;
+  carrier_.reset();
+  std::vector<panorama::StripFile> all;
+  for (std::optional<panorama::StripFile>& strip : strips) all.push_back(std::move(*strip));
+  return all;
+}
+
+void PanoramaMaker::add_figures(std::size_t n, const PanoramaFigures& figures) {
+  figures_.add(figures);
+  if (is_carried_beside() && plan_.strips[n].x < plan_.map.width_px)
+    left_bound_px_ = std::max(left_bound_px_, figures.shift_bound_px);
+}
+
+bool PanoramaMaker::is_carried_beside() const {
+  return request_.stereo && request_.stereo->carried_gap_px &&
+         request_.stereo->layout == core::StereoLayout::kSideBySide;
+}
+
+// Returns the turns of the strips: from left to right; but a strip of a right eye that is carried comes as soon as the
+// left eye's columns are there from which it is.
+std::vector<std::size_t> PanoramaMaker::order() const {
+  std::vector<std::size_t> turns(plan_.strips.size());
+  std::iota(turns.begin(), turns.end(), std::size_t{0});
+  if (!is_carried_beside()) return turns;
+  // Returns the last column that a strip has or needs: with it in turn, all others are there.
+  const auto last = [this](std::size_t n) {
+    const Strip& strip = plan_.strips[n];
+    std::int64_t end = 0;
+    for (const Strip& of : left_columns_for(strip)) end = std::max(end, of.x + of.width);
+    return end;
+  };
+  std::ranges::stable_sort(turns, {}, last);
+  return turns;
 }
 
 void PanoramaMaker::prepare() {
@@ -191,9 +234,12 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   if (!request_.layers.empty()) canvas.range_m.resize(pixels);
   const auto show = [&](double part) {
     InterruptGuard::check();
-    line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(plan_.strips.size()));
+    const double done = static_cast<double>(kept_ + made_) + part;
+    line.show("drawing", 0.95 * done / static_cast<double>(plan_.strips.size()));
   };
-  if (request_.stereo && request_.stereo->carried_gap_px) {
+  if (is_carried_beside()) {
+    draw_carried_beside(strip, canvas, show, times);
+  } else if (request_.stereo && request_.stereo->carried_gap_px) {
     draw_carried(strip, canvas, show, times);
   } else if (request_.stereo) {
     draw_eyes(strip, canvas, show, times);
@@ -207,7 +253,7 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   lay_overlays(canvas);
   panorama::StripFile made = write(n, canvas, times);
   colour_.swap(canvas.colour);
-  figures_.add(canvas.figures);
+  add_figures(n, canvas.figures);
   ++made_;
   return made;
 }
@@ -291,49 +337,93 @@ void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::fun
   }
 }
 
+// Returns the columns of the left eye's image that a strip has or is carried from.
+std::vector<Strip> PanoramaMaker::left_columns_for(const Strip& strip) const {
+  std::vector<Strip> columns;
+  const std::int64_t width = plan_.map.width_px;
+  const std::int64_t end = strip.x + strip.width;
+  if (strip.x < width) columns.push_back({strip.x, static_cast<int>(std::min(end, width) - strip.x)});
+  const std::int64_t begin = std::max(strip.x, width);
+  if (begin < end)
+    std::ranges::copy(carrier_->columns_for({begin - width, static_cast<int>(end - begin)}),
+                      std::back_inserter(columns));
+  return columns;
+}
+
+// Draws columns of the left eye's image.
+core::Frame PanoramaMaker::draw_left(const Strip& columns, Canvas& canvas,
+                                     const std::function<void(double)>& show, PanoramaTimes& times) {
+  core::Frame left;
+  left.width = columns.width;
+  left.height = static_cast<int>(plan_.map.height_px);
+  left.colour.resize(static_cast<std::size_t>(left.width) * static_cast<std::size_t>(left.height));
+  left.range_m.resize(left.colour.size());
+  const std::vector<Piece> pieces = carrier_->left_pieces({columns});
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    show(static_cast<double>(k) / static_cast<double>(pieces.size()));
+    const core::DrawResult result = draw_piece(pieces[k], true, canvas, times);
+    copy_into(left, pieces[k], result.frame);
+  }
+  return left;
+}
+
+// Carries a strip of the right eye's image from the left one's columns_for(strip).
+RightEye PanoramaMaker::carry(const core::Frame& left, const Strip& strip, Canvas& canvas,
+                              const std::function<void(double)>& show, PanoramaTimes& times) {
+  const Stopwatch watch(times.casting);
+  RightEye right = carrier_->carry(left, strip, dynamic_cast<core::PixelRenderer&>(*renderer_),
+                                   scene_.draw_request, pool_, show);
+  failures_.insert(failures_.end(), right.failures.begin(), right.failures.end());
+  require_complete(render_options(request_), right.drawn);
+  canvas.figures.shift_bound_px =
+      std::max({canvas.figures.shift_bound_px, left_bound_px_, right.drawn.certificate.shift_bound_px});
+  canvas.figures.shift_bound_px += right.added_px;
+  canvas.figures.add({right.drawn.certificate.geometric_error_m, 0, right.drawn.stats.tiles_substituted,
+                      static_cast<std::int64_t>(right.drawn.missing.size())});
+  return right;
+}
+
 // Draws the left eye with what lies on its right, and carries it.
 void PanoramaMaker::draw_carried(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                                  PanoramaTimes& times) {
   constexpr double kOfDrawing = 0.6;  // the left eye takes so much of the time
-  const CarriedEye carrier(plan_.map, viewpoint(), *request_.stereo);
-  const std::vector<Strip> columns = carrier.columns_for(strip);
-  std::vector<Piece> pieces = carrier.left_pieces(columns);
-  left_.width = std::accumulate(columns.begin(), columns.end(), 0,
-                                [](int sum, const Strip& one) { return sum + one.width; });
-  left_.height = static_cast<int>(plan_.map.height_px);
-  left_.colour.resize(static_cast<std::size_t>(left_.width) * static_cast<std::size_t>(left_.height));
-  left_.range_m.resize(left_.colour.size());
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    show(kOfDrawing * static_cast<double>(k) / static_cast<double>(pieces.size()));
-    const core::DrawResult result = draw_piece(pieces[k], true, canvas, times);
-    copy_into(left_, pieces[k], result.frame);
-  }
-  show(kOfDrawing);
-  RightEye right;
-  {
-    const Stopwatch watch(times.casting);
-    right = carrier.carry(left_, strip, dynamic_cast<core::PixelRenderer&>(*renderer_), scene_.draw_request,
-                          pool_, [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); });
-  }
-  failures_.insert(failures_.end(), right.failures.begin(), right.failures.end());
-  require_complete(render_options(request_), right.drawn);
-  canvas.figures.shift_bound_px =
-      std::max(canvas.figures.shift_bound_px, right.drawn.certificate.shift_bound_px);
-  canvas.figures.shift_bound_px += right.added_px;
-  canvas.figures.add({right.drawn.certificate.geometric_error_m, 0, right.drawn.stats.tiles_substituted,
-                      static_cast<std::int64_t>(right.drawn.missing.size())});
+  const std::vector<Strip> columns = carrier_->columns_for(strip);
+  core::Frame left = left_.join(columns, [&](const Strip& missing) {
+    return draw_left(
+        missing, canvas, [&](double part) { show(kOfDrawing * part); }, times);
+  });
+  left_.keep({});
+  RightEye right = carry(
+      left, strip, canvas, [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); }, times);
   const auto width = static_cast<std::size_t>(strip.width);
   for (std::int64_t y = 0; y < plan_.map.height_px; ++y) {
-    const std::span<base::Rgb> left(
-        &left_.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(left_.width)], width);
+    const std::span<base::Rgb> of_left(
+        &left.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width)], width);
     const std::span<base::Rgb> of_right(&right.frame.colour[static_cast<std::size_t>(y) * width], width);
     if (plan_.is_red_cyan) {
-      core::mix_red_cyan(left, of_right);
+      core::mix_red_cyan(of_left, of_right);
     } else {
       std::ranges::copy(of_right, &canvas.colour[canvas.index(0, y + plan_.map.height_px)]);
     }
-    std::ranges::copy(left, &canvas.colour[canvas.index(0, y)]);
+    std::ranges::copy(of_left, &canvas.colour[canvas.index(0, y)]);
   }
+}
+
+// Draws what a strip has of the left image, and carries what it has of the right one.
+void PanoramaMaker::draw_carried_beside(const Strip& strip, Canvas& canvas,
+                                        const std::function<void(double)>& show, PanoramaTimes& times) {
+  const auto draw_columns = [&](const Strip& missing) { return draw_left(missing, canvas, show, times); };
+  const auto copy_rows = [&](const core::Frame& image, std::int64_t to, std::int64_t count) {
+    for (std::int64_t y = 0; y < plan_.map.height_px; ++y)
+      std::copy_n(&image.colour[static_cast<std::size_t>(y * image.width)], count,
+                  &canvas.colour[canvas.index(to, y)]);
+  };
+  const std::int64_t of_left = std::clamp<std::int64_t>(plan_.map.width_px - strip.x, 0, strip.width);
+  if (of_left > 0) copy_rows(left_.join({{strip.x, static_cast<int>(of_left)}}, draw_columns), 0, of_left);
+  if (of_left == strip.width) return;
+  const Strip right{strip.x + of_left - plan_.map.width_px, static_cast<int>(strip.width - of_left)};
+  const core::Frame left = left_.join(carrier_->columns_for(right), draw_columns);
+  copy_rows(carry(left, right, canvas, show, times).frame, of_left, right.width);
 }
 
 void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {

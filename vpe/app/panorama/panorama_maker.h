@@ -10,6 +10,7 @@
 #include "panorama/image/strip_file.h"
 #include "vpe/app/cli/folder_lock.h"
 #include "vpe/app/cli/progress.h"
+#include "vpe/app/panorama/carried_eye.h"
 #include "vpe/app/panorama/panorama_overlays.h"
 #include "vpe/app/panorama/panorama_plan.h"
 #include "vpe/app/panorama/panorama_request.h"
@@ -65,7 +66,7 @@ class PanoramaMaker {
   PanoramaMaker(const PanoramaRequest& request, const PanoramaPlan& plan, Scene scene,
                 PanoramaOverlays& overlays, base::ThreadPool& pool);
 
-  // Returns all strips, those of an earlier run and new ones. Throws Interrupted with the number of strips that
+  // Returns all strips from left to right, those of an earlier run and new ones. Throws Interrupted with the number of strips that
   // are kept, std::runtime_error if another process makes the image, and what renderers and writers throw.
   std::vector<panorama::StripFile> run(ProgressLine& line, PanoramaTimes& times);
 
@@ -85,8 +86,18 @@ class PanoramaMaker {
   core::DrawResult draw_piece(const panorama::Piece& piece, bool want_range, Canvas& canvas,
                               PanoramaTimes& times);
   void draw(const panorama::Piece& piece, const panorama::Strip& strip, Canvas& canvas, PanoramaTimes& times);
+  void add_figures(std::size_t n, const PanoramaFigures& figures);
+  bool is_carried_beside() const;
+  std::vector<std::size_t> order() const;
+  std::vector<panorama::Strip> left_columns_for(const panorama::Strip& strip) const;
+  core::Frame draw_left(const panorama::Strip& columns, Canvas& canvas, const std::function<void(double)>& show,
+                        PanoramaTimes& times);
+  RightEye carry(const core::Frame& left, const panorama::Strip& strip, Canvas& canvas,
+                 const std::function<void(double)>& show, PanoramaTimes& times);
   void draw_carried(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                     PanoramaTimes& times);
+  void draw_carried_beside(const panorama::Strip& strip, Canvas& canvas,
+                           const std::function<void(double)>& show, PanoramaTimes& times);
   void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                  PanoramaTimes& times);
   void lay_overlays(Canvas& canvas);
@@ -110,8 +121,10 @@ class PanoramaMaker {
   std::unique_ptr<FolderLock> lock_;  // of the strips' folder, during and after run()
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<paging::Surface> surface_;
-  std::vector<base::Rgb> colour_;  // of one strip; the next one reuses it
-  core::Frame left_;               // of one strip, where the right eye is carried
+  std::vector<base::Rgb> colour_;        // of one strip; the next one reuses it
+  std::unique_ptr<CarriedEye> carrier_;  // where the right eye is carried
+  LeftColumns left_;                     // for strips of the right eye
+  double left_bound_px_ = 0;             // of strips with parts of the left image, side by side
   std::vector<std::string> failures_;
   PanoramaFigures figures_;
   int kept_ = 0;

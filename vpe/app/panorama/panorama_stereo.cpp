@@ -69,11 +69,6 @@ void check_stereo_panorama(const PanoramaRequest& request) {
         "--stereo: a facet has one eye, but every column of a panorama for two eyes has eyes of its own; use "
         "--projection cylinder or equirectangular");
   }
-  if (request.stereo->carried_gap_px && request.stereo->layout == core::StereoLayout::kSideBySide) {
-    throw UsageError(
-        "--stereo-method reproject: side by side, the left image is finished before the right one is begun; use "
-        "--stereo ou or anaglyph, or --stereo-method full");
-  }
   if (request.stereo->carried_gap_px && !core::has_one_ray_a_pixel(request.settings.values())) {
     throw UsageError(
         "--stereo-method reproject: images with several samples a pixel (samples, rays.vertical) are not carried; use "
