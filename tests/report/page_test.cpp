@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
-#include "vpe/report/axis.h"
-#include "vpe/report/histogram.h"
 #include "vpe/report/page.h"
+#include "vpe/report/plots/axis.h"
+#include "vpe/report/plots/ground_plot.h"
+#include "vpe/report/plots/histogram.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::report {
 namespace {
@@ -203,6 +205,75 @@ TEST(Page, ImagesAreInIt) {
     EXPECT_NE(html.find("src=\"data:image/png;base64," + std::string(base64) + "\"/>"), std::string::npos)
         << base64;
   EXPECT_NE(html.find("<figcaption>a &lt;foobar&gt;</figcaption>"), std::string::npos);
+}
+
+GroundPlot small_ground() {
+  GroundPlot plot;
+  plot.title = "Profile & more";
+  plot.x_label = "distance, m";
+  plot.y_label = "elevation, m";
+  plot.note = "Datum: sphere";
+  plot.limits = {"steeper than 5 degrees", "steeper than 15 degrees"};
+  plot.marks = {0, 300};
+  plot.columns = {{0, 100, 10, 20, 9, 21, 0, false},
+                  {100, 200, 20, 60, 20, 66, 2, false},
+                  {200, 250, 0, 0, 0, 0, 0, true},
+                  {250, 300, 40, 42, 39, 43, 1, false}};
+  return plot;
+}
+
+TEST(GroundPlot, IsSvgWithTheGroundByItsSteepness) {
+  const std::string svg = to_svg(small_ground());
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(svg.c_str()));
+  EXPECT_EQ(std::string(document.select_node("//title").node().text().get()), "Profile & more");
+  // Two stretches with data, each filled twice; a line for each run of one steepness.
+  EXPECT_EQ(document.select_nodes("//path[@fill='none']").size(), 3U);
+  EXPECT_EQ(document.select_nodes("//path[@fill-opacity]").size(), 4U);
+  EXPECT_EQ(document.select_nodes("//line[@stroke-dasharray='3 3']").size(), 2U);
+  EXPECT_NE(svg.find("steeper than 15 degrees"), std::string::npos);
+  EXPECT_NE(svg.find("Datum: sphere"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(to_svg(small_ground()), svg);
+  pugi::xml_document file;
+  EXPECT_TRUE(file.load_string(svg_file(svg).c_str()));
+}
+
+TEST(GroundPlot, TheAxisSpansItsGround) {
+  const GroundPlot plot = small_ground();
+  const PlotRange range = range_of(plot);
+  EXPECT_LE(range.low, 9);
+  EXPECT_GE(range.high, 66);
+  EXPECT_LT(range.high - range.low, 150);
+  const PlotInside inside = inside_of(plot);
+  EXPECT_GT(inside.width_px, 700);
+  EXPECT_LT(inside.width_px, plot.width_px);
+  EXPECT_GT(inside.height_px, 150);
+}
+
+TEST(GroundPlot, WithoutGroundItIsStillAPicture) {
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(to_svg(GroundPlot{}).c_str()));
+  GroundPlot bad = small_ground();
+  bad.columns[0].low = std::nan("");
+  bad.columns[3].end = HUGE_VAL;
+  const std::string svg = to_svg(bad);
+  EXPECT_TRUE(document.load_string(svg.c_str()));
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+TEST(Svg, ElementsAreEscapedAndShort) {
+  EXPECT_EQ(svg_number(1.005), "1.00");
+  EXPECT_EQ(svg_attribute("x", -2.5), " x=\"-2.50\"");
+  EXPECT_EQ(svg_text(1, 2, "end", "a < b"),
+            "<text x=\"1.00\" y=\"2.00\" text-anchor=\"end\">a &lt; b</text>\n");
+  EXPECT_EQ(svg_line(0, 0, 1, 1, " stroke=\"red\""),
+            "<line x1=\"0.00\" y1=\"0.00\" x2=\"1.00\" y2=\"1.00\" stroke=\"red\"/>\n");
+  const std::string begun = svg_begin(10, 20, "A & B", "about");
+  EXPECT_NE(begun.find("<title>A &amp; B</title>"), std::string::npos);
+  EXPECT_NE(begun.find("<desc>about</desc>"), std::string::npos);
+  EXPECT_NE(begun.find("viewBox=\"0 0 10 20\""), std::string::npos);
 }
 
 }  // namespace

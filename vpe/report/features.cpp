@@ -5,11 +5,11 @@
 namespace vpe::report {
 namespace {
 
-using Figure = std::optional<double> SceneCost::*;
+using CostValue = std::optional<double> SceneCost::*;
 
 struct NamedFigure {
   const char* name;
-  Figure figure;
+  CostValue figure;
   double factor;
   const char* meaning;
 };

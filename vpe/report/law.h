@@ -9,7 +9,7 @@
 
 #include "vpe/report/growth.h"
 #include "vpe/report/interleaved_timing.h"
-#include "vpe/report/plot.h"
+#include "vpe/report/plots/plot.h"
 #include "vpe/report/table.h"
 
 namespace vpe::report {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "vpe/base/number.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::report {
 namespace {
@@ -149,21 +150,6 @@ void add_section(std::string& html, const Section& section) {
 }
 
 }  // namespace
-
-std::string escape_markup(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      case '\'': escaped += "&#39;"; break;
-      default: escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string data_uri(std::span<const std::uint8_t> png) { return "data:image/png;base64," + to_base64(png); }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "vpe/report/histogram.h"
-#include "vpe/report/plot.h"
+#include "vpe/report/plots/histogram.h"
+#include "vpe/report/plots/plot.h"
 #include "vpe/report/table.h"
 
 namespace vpe::report {
@@ -58,8 +58,5 @@ std::string to_html(const Page& page);
 
 // Returns the bytes of a PNG file as a URI, for the attribute src of an image.
 std::string data_uri(std::span<const std::uint8_t> png);
-
-// Escapes "&", "<", ">" and quotes for HTML and XML.
-std::string escape_markup(const std::string& text);
 
 }  // namespace vpe::report

@@ -6,7 +6,7 @@
 
 #include "tests/bench/figures/ray_figures.h"
 #include "vpe/base/nice_ticks.h"
-#include "vpe/report/page.h"
+#include "vpe/report/plots/svg.h"
 
 namespace bench {
 

@@ -1,13 +1,12 @@
-#include "vpe/report/plot.h"
+#include "vpe/report/plots/plot.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "vpe/base/number.h"
-#include "vpe/report/axis.h"
-#include "vpe/report/page.h"
+#include "vpe/report/plots/axis.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::report {
 namespace {
@@ -22,39 +21,17 @@ constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "
                                               "#e69f00", "#56b4e9", "#8c8c8c"};
 constexpr int kShapes = 5;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%ld.%02ld", std::lround(std::floor(value)),
-                std::clamp(std::lround((value - std::floor(value)) * 100), 0L, 99L));
-  return text;
-}
-
-std::string attribute(const char* name, double value) {
-  return std::string(" ") + name + "=\"" + number(value) + "\"";
-}
-
-std::string text_at(double x, double y, const char* anchor, const std::string& text,
-                    const std::string& more = "") {
-  return "<text" + attribute("x", x) + attribute("y", y) + " text-anchor=\"" + anchor + "\"" + more + ">" +
-         escape_markup(text) + "</text>\n";
-}
-
-std::string line(double x0, double y0, double x1, double y1, const std::string& style) {
-  return "<line" + attribute("x1", x0) + attribute("y1", y0) + attribute("x2", x1) + attribute("y2", y1) +
-         style + "/>\n";
-}
-
 std::string polygon(double x, double y, double size, const std::vector<std::array<double, 2>>& corners) {
   std::string points;
   for (const auto& corner : corners)
-    points += number(x + size * corner[0]) + "," + number(y + size * corner[1]) + " ";
+    points += svg_number(x + size * corner[0]) + "," + svg_number(y + size * corner[1]) + " ";
   return "<polygon points=\"" + points + "\"";
 }
 
 // Returns an element without its end, for more attributes.
 std::string shape(int which, double x, double y, double size) {
   switch (which % kShapes) {
-    case 0: return "<circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", size);
+    case 0: return "<circle" + svg_attribute("cx", x) + svg_attribute("cy", y) + svg_attribute("r", size);
     case 1: return polygon(x, y, size, {{-.9, -.9}, {.9, -.9}, {.9, .9}, {-.9, .9}});
     case 2: return polygon(x, y, size, {{0, -1.1}, {1.1, .8}, {-1.1, .8}});
     case 3: return polygon(x, y, size, {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}});
@@ -72,12 +49,8 @@ class Drawing {
         height_(plot.height_px - kTop - kBottom) {}
 
   std::string svg() {
-    text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot_.width_px) + " " +
-            std::to_string(plot_.height_px) + "\" width=\"" + std::to_string(plot_.width_px) + "\" height=\"" +
-            std::to_string(plot_.height_px) +
-            "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"currentColor\" role=\"img\">\n<title>" +
-            escape_markup(plot_.title) + "</title>\n";
-    text_ += text_at(kLeft, kTop - 14, "start", plot_.title, " font-weight=\"600\"");
+    text_ = svg_begin(plot_.width_px, plot_.height_px, plot_.title);
+    text_ += svg_text(kLeft, kTop - 14, "start", plot_.title, " font-weight=\"600\"");
     draw_axes();
     for (std::size_t k = 0; k < plot_.series.size(); ++k) draw(plot_.series[k], static_cast<int>(k));
     return text_ + "</svg>\n";
@@ -103,17 +76,19 @@ class Drawing {
     const std::string grid = " stroke=\"currentColor\" stroke-opacity=\"0.15\"";
     for (const Tick& tick : x_.ticks()) {
       const double x = at_x(tick.value);
-      text_ += line(x, kTop, x, kTop + height_, grid) + text_at(x, kTop + height_ + 18, "middle", tick.text);
+      text_ +=
+          svg_line(x, kTop, x, kTop + height_, grid) + svg_text(x, kTop + height_ + 18, "middle", tick.text);
     }
     for (const Tick& tick : y_.ticks()) {
       const double y = at_y(tick.value);
-      text_ += line(kLeft, y, kLeft + width_, y, grid) + text_at(kLeft - 8, y + 4, "end", tick.text);
+      text_ += svg_line(kLeft, y, kLeft + width_, y, grid) + svg_text(kLeft - 8, y + 4, "end", tick.text);
     }
-    text_ += "<rect" + attribute("x", kLeft) + attribute("y", kTop) + attribute("width", width_) +
-             attribute("height", height_) + " fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.6\"/>\n";
-    text_ += text_at(kLeft + width_ / 2, kTop + height_ + 40, "middle", plot_.x_label);
-    const std::string rotated = " transform=\"rotate(-90 16 " + number(kTop + height_ / 2) + ")\"";
-    text_ += text_at(16, kTop + height_ / 2, "middle", plot_.y_label, rotated);
+    text_ += "<rect" + svg_attribute("x", kLeft) + svg_attribute("y", kTop) + svg_attribute("width", width_) +
+             svg_attribute("height", height_) +
+             " fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.6\"/>\n";
+    text_ += svg_text(kLeft + width_ / 2, kTop + height_ + 40, "middle", plot_.x_label);
+    const std::string rotated = " transform=\"rotate(-90 16 " + svg_number(kTop + height_ / 2) + ")\"";
+    text_ += svg_text(16, kTop + height_ / 2, "middle", plot_.y_label, rotated);
   }
 
   void draw(const Series& series, int number_of_series) {
@@ -125,11 +100,11 @@ class Drawing {
       if (!std::isfinite(point.x) || !std::isfinite(point.y)) continue;
       const double x = at_x(point.x);
       const double y = at_y(point.y);
-      path += (path.empty() ? "M" : "L") + number(x) + " " + number(y);
+      path += (path.empty() ? "M" : "L") + svg_number(x) + " " + svg_number(y);
       if (point.bound && std::isfinite(*point.bound)) {
         const double top = at_y(*point.bound);
-        marks += line(x, y, x, top, stroke + " stroke-opacity=\"0.45\" stroke-dasharray=\"2 2\"") +
-                 line(x - 4, top, x + 4, top, stroke + " stroke-opacity=\"0.8\"");
+        marks += svg_line(x, y, x, top, stroke + " stroke-opacity=\"0.45\" stroke-dasharray=\"2 2\"") +
+                 svg_line(x - 4, top, x + 4, top, stroke + " stroke-opacity=\"0.8\"");
       }
       marks += shape(number_of_series, x, y, point.marked ? 5.5 : 3.5) + stroke + " fill=\"" +
                (point.marked ? colour : std::string("none")) + "\"><title>" +
@@ -142,7 +117,7 @@ class Drawing {
     const double x = kLeft + width_ + 18;
     const double y = kTop + 10 + 20 * number_of_series;
     text_ += shape(number_of_series, x, y, 4) + stroke + " fill=\"" + colour + "\"/>\n" +
-             text_at(x + 12, y + 4, "start", series.name);
+             svg_text(x + 12, y + 4, "start", series.name);
   }
 
   static std::string closing(int number_of_series) {
@@ -169,12 +144,6 @@ class Drawing {
 
 std::string to_svg(const Plot& plot) { return Drawing(plot).svg(); }
 
-std::string to_svg_file(const Plot& plot) {
-  std::string svg = to_svg(plot);
-  const std::string title_end = "</title>\n";
-  svg.insert(svg.find(title_end) + title_end.size(), "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
-  svg.insert(4, " style=\"color:#000\"");
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg;
-}
+std::string to_svg_file(const Plot& plot) { return svg_file(to_svg(plot)); }
 
 }  // namespace vpe::report

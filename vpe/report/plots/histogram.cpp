@@ -1,11 +1,11 @@
-#include "vpe/report/histogram.h"
+#include "vpe/report/plots/histogram.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "vpe/base/number.h"
-#include "vpe/report/axis.h"
-#include "vpe/report/page.h"
+#include "vpe/report/plots/axis.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::report {
 namespace {
@@ -34,22 +34,6 @@ Axis axis_of(const Histogram& histogram, bool of_x) {
   return {values, false};
 }
 
-std::string fixed(double value) { return base::format_fixed(value, 2); }
-
-std::string place(const char* name, double value) {
-  return std::string(" ") + name + "=\"" + fixed(value) + "\"";
-}
-
-std::string written(double x, double y, const char* anchor, const std::string& text,
-                    const std::string& more = "") {
-  return "<text" + place("x", x) + place("y", y) + " text-anchor=\"" + anchor + "\"" + more + ">" +
-         escape_markup(text) + "</text>\n";
-}
-
-std::string rule(double x0, double y0, double x1, double y1, const std::string& style) {
-  return "<line" + place("x1", x0) + place("y1", y0) + place("x2", x1) + place("y2", y1) + style + "/>\n";
-}
-
 class HistogramDrawing {
  public:
   explicit HistogramDrawing(const Histogram& histogram)
@@ -60,19 +44,13 @@ class HistogramDrawing {
         height_(histogram.height_px - kHistogramTop - kHistogramBottom) {}
 
   std::string svg() {
-    const std::string width = std::to_string(histogram_.width_px);
-    const std::string height = std::to_string(histogram_.height_px);
-    text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width + " " + height + "\" width=\"" +
-            width + "\" height=\"" + height +
-            "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"currentColor\" role=\"img\">\n<title>" +
-            escape_markup(histogram_.title) + "</title>\n";
-    if (!histogram_.about.empty()) text_ += "<desc>" + escape_markup(histogram_.about) + "</desc>\n";
-    text_ += written(kHistogramLeft, 16, "start", histogram_.title, " font-weight=\"600\"");
+    text_ = svg_begin(histogram_.width_px, histogram_.height_px, histogram_.title, histogram_.about);
+    text_ += svg_text(kHistogramLeft, 16, "start", histogram_.title, " font-weight=\"600\"");
     draw_grid();
     for (const Bar& bar : histogram_.bars)
       if (is_finite(bar)) draw(bar);
-    text_ += rule(kHistogramLeft, bottom(), kHistogramLeft + width_, bottom(),
-                  " stroke=\"currentColor\" stroke-opacity=\"0.6\"");
+    text_ += svg_line(kHistogramLeft, bottom(), kHistogramLeft + width_, bottom(),
+                      " stroke=\"currentColor\" stroke-opacity=\"0.6\"");
     draw_marks();
     return text_ + "</svg>\n";
   }
@@ -84,16 +62,16 @@ class HistogramDrawing {
 
   void draw_grid() {
     const std::string style = " stroke=\"currentColor\" stroke-opacity=\"0.15\"";
-    for (const Tick& tick : x_.ticks()) text_ += written(at_x(tick.value), bottom() + 17, "middle", tick.text);
+    for (const Tick& tick : x_.ticks()) text_ += svg_text(at_x(tick.value), bottom() + 17, "middle", tick.text);
     for (const Tick& tick : y_.ticks()) {
       const double y = at_y(tick.value);
-      text_ += rule(kHistogramLeft, y, kHistogramLeft + width_, y, style) +
-               written(kHistogramLeft - 6, y + 4, "end", tick.text);
+      text_ += svg_line(kHistogramLeft, y, kHistogramLeft + width_, y, style) +
+               svg_text(kHistogramLeft - 6, y + 4, "end", tick.text);
     }
     const double middle = kHistogramTop + height_ / 2;
-    text_ += written(kHistogramLeft + width_ / 2, bottom() + 38, "middle", histogram_.x_label) +
-             written(14, middle, "middle", histogram_.y_label,
-                     " transform=\"rotate(-90 14 " + fixed(middle) + ")\"");
+    text_ += svg_text(kHistogramLeft + width_ / 2, bottom() + 38, "middle", histogram_.x_label) +
+             svg_text(14, middle, "middle", histogram_.y_label,
+                      " transform=\"rotate(-90 14 " + svg_number(middle) + ")\"");
   }
 
   void draw(const Bar& bar) {
@@ -104,9 +82,9 @@ class HistogramDrawing {
                                                  : base::format_significant(bar.low, 6) + " to " +
                                                        base::format_significant(bar.high, 6) + ": " +
                                                        base::format_significant(bar.share, 3);
-    text_ += "<rect" + place("x", left + gap) + place("y", at_y(bar.share)) +
-             place("width", std::max(0.1, right - left - 2 * gap)) +
-             place("height", std::max(0.0, bottom() - at_y(bar.share))) + " fill=\"#4a90c4\"><title>" +
+    text_ += "<rect" + svg_attribute("x", left + gap) + svg_attribute("y", at_y(bar.share)) +
+             svg_attribute("width", std::max(0.1, right - left - 2 * gap)) +
+             svg_attribute("height", std::max(0.0, bottom() - at_y(bar.share))) + " fill=\"#4a90c4\"><title>" +
              escape_markup(label) + "</title></rect>\n";
   }
 
@@ -121,11 +99,11 @@ class HistogramDrawing {
       int row = 0;
       while (row < kLabelRows && ends[row] > left) ++row;
       const double y = kHistogramTop - 10 - 13 * std::min(row, kLabelRows - 1);
-      text_ += rule(x, y + 3, x, bottom(),
-                    " stroke=\"currentColor\" stroke-opacity=\"0.7\" stroke-dasharray=\"3 2\"");
+      text_ += svg_line(x, y + 3, x, bottom(),
+                        " stroke=\"currentColor\" stroke-opacity=\"0.7\" stroke-dasharray=\"3 2\"");
       if (row == kLabelRows) continue;
       ends[row] = left + 2 * half + 4;
-      text_ += written(left + half, y, "middle", mark.label);
+      text_ += svg_text(left + half, y, "middle", mark.label);
     }
   }
 

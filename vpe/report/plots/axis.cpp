@@ -1,4 +1,4 @@
-#include "vpe/report/axis.h"
+#include "vpe/report/plots/axis.h"
 
 #include <algorithm>
 #include <cmath>
