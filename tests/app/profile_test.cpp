@@ -1,5 +1,7 @@
 // vpe profile.
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "tests/app/support/app_fixture.h"
@@ -53,6 +55,38 @@ TEST_F(Profile, TheResamplingErrorIsThatOfItsPoints) {
   EXPECT_GT(largest_m, 0);
   EXPECT_EQ(answer["resampling_max_m"], largest_m);
   EXPECT_GT(answer["planet_resampling_max_m"].get<double>(), largest_m);
+}
+
+TEST_F(Profile, SteepGroundIsMarkedAndDrawn) {
+  const json points = ask({"-60,-5", "-40,-5", "--step", "5000", "--limit", "0.5,2"});
+  std::set<double> seen;
+  for (const json& p : points) {
+    const double slope_deg = p["steepest_slope_deg"];
+    const json expected = slope_deg > 2 ? json(2.0) : slope_deg > 0.5 ? json(0.5) : json();
+    EXPECT_EQ(p["steeper_than_deg"], expected);
+    seen.insert(expected.is_null() ? 0.0 : expected.get<double>());
+  }
+  EXPECT_GE(seen.size(), 2U);
+  EXPECT_FALSE(ask({"-60,-5", "-40,-5"})[0].contains("steeper_than_deg"));
+
+  const Result drawn = vpe({"profile", planet().string(), "-60,-5", "-50,0", "-40,-5", "--limit", "0.5,2",
+                            "--plot", "way.svg", "-q"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_GT(std::ranges::count(drawn.out, '\n'), 20);
+  const std::string svg = read_text(dir_ / "way.svg");
+  EXPECT_TRUE(says(svg, {"<svg", "elevation, m", "distance along the path, km", "steeper than 0.5 degrees",
+                         "Vertical exaggeration", "Datum"}));
+  // The file is replaced by another plot, and by nothing else.
+  EXPECT_EQ(vpe({"profile", planet().string(), "-60,-5", "-59,-5", "--plot", "way.svg", "-q"}).exit_code, 0);
+  write_text(dir_ / "notes.svg", "mine");
+  expect_failure({"profile", planet().string(), "-60,-5", "-59,-5", "--plot", "notes.svg"}, 1, {"notes.svg"});
+  expect_failure({"profile", planet().string(), "-60,-5", "-59,-5", "--plot", "way.pdf"}, 2,
+                 {"--plot", ".svg"});
+  expect_failure({"profile", planet().string(), "-60,-5", "-59,-5", "--plot", "no/way.svg"}, 1, {"no"});
+  expect_failure({"profile", planet().string(), "-60,-5", "-59,-5", "--limit", "9,3"}, 2,
+                 {"--limit", "rising"});
+  expect_failure({"profile", planet().string(), "-60,-5", "-59,-5", "--limit", "1,2,3,4"}, 2,
+                 {"--limit", "three"});
 }
 
 TEST_F(Profile, HeightsAreThoseOfQuery) {

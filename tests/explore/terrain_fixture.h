@@ -41,6 +41,20 @@ struct SmoothGround {
   }
 };
 
+// A plane through the middle of the patch, tilted by 20 degrees to the sphere there, within some 100 km;
+// elsewhere it ends at +-30 km.
+struct PlaneGround {
+  static glm::dvec3 normal() { return mars::direction({-15, 20}); }
+  static double offset_m() { return mars::kMarsRadius_m * glm::dot(normal(), kPatch); }
+  static double height_m(const glm::dvec3& d) {
+    const double facing = glm::dot(normal(), d);
+    return facing > 0.1 ? std::clamp(offset_m() / facing - mars::kMarsRadius_m, -30e3, 30e3) : -30e3;
+  }
+  static auto make(const std::filesystem::path& path) {
+    return build_fake(path, FakeElevation(height_m, fine_around(kPatch, 0.02, 1000)), 100000);
+  }
+};
+
 // 800 m high, 4 km wide to both sides, along the meridian through kPatch.
 struct RidgeGround {
   static double height_m(const glm::dvec3& d) {

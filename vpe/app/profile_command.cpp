@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -7,22 +8,45 @@
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/base/file.h"
+#include "vpe/base/number.h"
 #include "vpe/explore/measure/profile.h"
+#include "vpe/explore/measure/profile_plot.h"
+#include "vpe/report/plots/ground_plot.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::app {
 
 namespace {
 
+constexpr std::size_t kMostLimits = 3;
+
 struct ProfileArguments {
   std::vector<std::string> places;
   std::string latitude;
   double step_m = 0;
+  std::vector<double> limits_deg;
+  std::string plot;
 };
+
+// Returns how many of the limits the facet at a point exceeds.
+int steepness(const paging::ProfilePoint& point, const std::vector<double>& limits_deg) {
+  if (point.nodata) return 0;
+  return static_cast<int>(
+      std::ranges::count_if(limits_deg, [&](double limit) { return point.cross_slope_deg > limit; }));
+}
+
+// Returns the largest limit that the facet at a point exceeds, or null.
+nlohmann::json exceeded(const paging::ProfilePoint& point, const std::vector<double>& limits_deg) {
+  const int count = steepness(point, limits_deg);
+  return count == 0 ? nlohmann::json() : nlohmann::json(limits_deg[static_cast<std::size_t>(count) - 1]);
+}
 
 nlohmann::json to_json(const paging::ProfilePoint& p) {
   using nlohmann::json;
@@ -36,10 +60,55 @@ nlohmann::json to_json(const paging::ProfilePoint& p) {
           {"place_given", p.waypoint}};
 }
 
+// Writes the profile as SVG.
+void write_plot(const explore::Profile& profile, const ProfileArguments& arguments,
+                const paging::PlanetMeta& meta) {
+  constexpr int kMostColumns = 800;
+  const double length_m = profile.points.back().distance_m;
+  const bool is_long = length_m >= 10'000;
+  const double unit_m = is_long ? 1000 : 1;
+  report::GroundPlot plot;
+  plot.title = "Profile over " + base::format_significant(length_m / unit_m, 4) + (is_long ? " km" : " m");
+  plot.x_label = std::string("distance along the path, ") + (is_long ? "km" : "m");
+  plot.y_label = "elevation, m";
+  plot.about = "The ground from " + base::format_significant(profile.lowest_m, 5) + " to " +
+               base::format_significant(profile.highest_m, 5) + " m.";
+  const int count = std::clamp(static_cast<int>(profile.points.size()) - 1, 1, kMostColumns);
+  const std::vector<explore::PlotColumn> columns = explore::plot_columns(profile, count);
+  for (std::size_t n = 0; n < columns.size(); ++n) {
+    const explore::PlotColumn& column = columns[n];
+    const double share = length_m / unit_m / static_cast<double>(columns.size());
+    plot.columns.push_back({static_cast<double>(n) * share, static_cast<double>(n + 1) * share, column.begin_m,
+                            column.end_m, column.low_m, column.high_m, 0, column.nodata});
+  }
+  for (const paging::ProfilePoint& point : profile.points) {
+    const auto at = std::min(
+        columns.size() - 1, static_cast<std::size_t>(point.distance_m / length_m * static_cast<double>(count)));
+    plot.columns[at].steepness = std::max(plot.columns[at].steepness, steepness(point, arguments.limits_deg));
+    if (point.waypoint) plot.marks.push_back(point.distance_m / unit_m);
+  }
+  for (const double limit : arguments.limits_deg)
+    plot.limits.push_back("steeper than " + base::format_number(limit) + " degrees");
+  const report::PlotInside inside = report::inside_of(plot);
+  const report::PlotRange range = report::range_of(plot);
+  const double exaggeration = inside.height_px / (range.high - range.low) / (inside.width_px / length_m);
+  plot.note = "Datum: " + paging::describe_datum(meta) + ". Vertical exaggeration " +
+              base::format_significant(exaggeration, 3) + ". Points at most " +
+              base::format_significant(profile.step_m, 3) + " m apart.";
+  base::write_file(arguments.plot, report::svg_file(report::to_svg(plot)));
+}
+
 void run_profile(const ProfileArguments& arguments, const Common& common) {
   auto [planet_name, places] = split_places(arguments.places);
   if (places.empty()) places = read_places(std::cin).places;
   if (places.size() < 2) throw UsageError("a profile needs at least two places, LON,LAT in degrees");
+  if (!std::ranges::is_sorted(arguments.limits_deg) || arguments.limits_deg.size() > kMostLimits)
+    throw UsageError("--limit takes at most three slopes, in rising order");
+  if (!arguments.plot.empty()) {
+    if (std::filesystem::path(arguments.plot).extension() != ".svg")
+      throw UsageError("--plot writes SVG: give a file that ends in .svg");
+    check_outputs({{"--plot", arguments.plot, FileKind::kPlot}}, {planet_name});
+  }
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
@@ -51,12 +120,14 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
   } catch (const std::invalid_argument& e) {
     throw UsageError(e.what());
   }
+  if (!arguments.plot.empty()) write_plot(profile, arguments, meta);
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
     double resampling_max_m = 0;
     std::int64_t compared = 0;
     for (const paging::ProfilePoint& p : profile.points) {
       list.push_back(to_json(p));
+      if (!arguments.limits_deg.empty()) list.back()["steeper_than_deg"] = exceeded(p, arguments.limits_deg);
       const paging::ResamplingError here = paging::query(surface, p.place).resampling;
       resampling_max_m = std::max(resampling_max_m, here.max_m);
       compared += here.posts;
@@ -88,10 +159,19 @@ void add_profile(CLI::App& program, Common& common) {
       ->add_option("--step", arguments->step_m,
                    "Largest distance between points, metres (default: 1000 points along the profile)")
       ->check(number_within(0.001, 1e7));
+  command
+      ->add_option(
+          "--limit", arguments->limits_deg,
+          "Slopes in degrees, in rising order and separated by commas: tell where the ground is steeper")
+      ->delimiter(',')
+      ->check(number_within(0, 90));
+  command->add_option("--plot", arguments->plot, "Also draw the profile (.svg)");
   add_examples(*command,
                {{"heights every 2 km along a great circle",
                  "vpe profile mars.vpe -70,-13 -60,-14 --step 2000 > profile.csv"},
-                {"a way over three places", "vpe profile mars.vpe 137.30,-4.60 137.37,-4.67 137.45,-4.75"}});
+                {"a way over three places", "vpe profile mars.vpe 137.30,-4.60 137.37,-4.67 137.45,-4.75"},
+                {"a plot with the ground that is too steep for a rover",
+                 "vpe profile mars.vpe 137.30,-4.60 137.45,-4.75 --limit 15,25 --plot way.svg > way.csv"}});
   command->callback([arguments, &common] { run_profile(*arguments, common); });
 }
 

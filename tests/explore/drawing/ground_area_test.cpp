@@ -18,25 +18,8 @@ namespace {
 constexpr double kRadius_m = mars::kMarsRadius_m;
 const mars::LonLat kMiddle{-35, 20};  // of test_support::kPatch
 
-// A plane through the middle of the patch, tilted by 20 degrees to the sphere there, within some 100 km;
-// elsewhere it ends at +-30 km.
-struct PlaneGround {
-  static glm::dvec3 normal() { return mars::direction({-15, 20}); }
-  static double offset_m() { return kRadius_m * glm::dot(normal(), test_support::kPatch); }
-  static double height_m(const glm::dvec3& d) {
-    const double facing = glm::dot(normal(), d);
-    return facing > 0.1 ? std::clamp(offset_m() / facing - kRadius_m, -30e3, 30e3) : -30e3;
-  }
-  static auto make(const std::filesystem::path& path) {
-    return test_support::build_fake(
-        path,
-        test_support::FakeElevation(height_m, test_support::fine_around(test_support::kPatch, 0.02, 1000)),
-        100000);
-  }
-};
-
 class SphereAreas : public test_support::GroundTest<test_support::SmoothGround> {};
-class PlaneAreas : public test_support::GroundTest<PlaneGround> {};
+class PlaneAreas : public test_support::GroundTest<test_support::PlaneGround> {};
 class BumpyAreas : public test_support::GroundTest<test_support::BumpyGround> {};
 
 std::vector<mars::LonLat> ring(mars::LonLat centre, double radius_rad, int corners, double from_deg = 10) {
@@ -116,7 +99,7 @@ TEST_F(PlaneAreas, AreThoseOfThePlane) {
     const std::vector<glm::dvec3> polygon = directions_of(places);
     glm::dvec3 twice_m2{0, 0, 0};
     const auto on_plane = [](const glm::dvec3& d) {
-      return d * (PlaneGround::offset_m() / glm::dot(PlaneGround::normal(), d));
+      return d * (test_support::PlaneGround::offset_m() / glm::dot(test_support::PlaneGround::normal(), d));
     };
     for (std::size_t k = 2; k < polygon.size(); ++k)
       twice_m2 += glm::cross(on_plane(polygon[k - 1]) - on_plane(polygon[0]),
@@ -246,6 +229,17 @@ TEST_F(BumpyAreas, MeasuresOfDrawings) {
   const auto ground = ground_measures(surface(), drawing);
   ASSERT_TRUE(ground && ground->area);
   EXPECT_NEAR(ground->area->area_m2, *flat.area_m2, *flat.area_m2 * 0.1);
+  ASSERT_TRUE(ground->statistics);
+  EXPECT_NEAR(ground->statistics->sphere_area_m2, *flat.area_m2, 1e-6 * *flat.area_m2);
+  std::vector<double> shares;
+  GroundAreaOptions options;
+  options.progress = [&](double share) { shares.push_back(share); };
+  ASSERT_TRUE(ground_measures(surface(), drawing, options));
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  drawing.vertices = {{0, 0}, {80, 0}, {40, 60}};
+  const auto large = ground_measures(surface(), drawing);
+  ASSERT_TRUE(large && large->area);
+  EXPECT_FALSE(large->statistics);
   drawing.vertices = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
   const SphereMeasures crossed = sphere_measures(drawing, kRadius_m);
   EXPECT_FALSE(crossed.area_m2);
@@ -254,6 +248,12 @@ TEST_F(BumpyAreas, MeasuresOfDrawings) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_FALSE(ground_measures(surface(), drawing, {}, stop.get_token()));
+}
+
+TEST(MeasuredVolumeText, HasFiveDigits) {
+  EXPECT_EQ(measured_volume_text(0), "0 m³");
+  EXPECT_EQ(measured_volume_text(1234.5678), "1234.6 m³");
+  EXPECT_EQ(measured_volume_text(12345678901), "12.346 km³");
 }
 
 TEST(MeasuredAreaText, HasFiveDigits) {

@@ -97,6 +97,7 @@ const char* name_of(FileKind kind) {
     case FileKind::kSticks: return "a model of sticks of vpe";
     case FileKind::kVolume: return "a volume of vpe";
     case FileKind::kPlanetPage: return "a page of 'vpe info'";
+    case FileKind::kPlot: return "an SVG file";
   }
   return "";
 }
@@ -126,6 +127,7 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kPlanet: return paging::is_planet_file(file.string());
     case FileKind::kSticks: return head.starts_with("VPESTICK");
     case FileKind::kVolume: return head.starts_with("VPEVOLUM");
+    case FileKind::kPlot: return contains(head, "<svg");
     case FileKind::kPlanetPage:
       return head.starts_with("<!DOCTYPE html>") && contains(head, "\"generator\" content=\"vpe info\"");
   }

@@ -27,6 +27,7 @@ enum class FileKind : std::uint8_t {
   kSticks,      // model of sticks
   kVolume,      // semi-transparent model
   kPlanetPage,  // of vpe info
+  kPlot,        // SVG, of any program
 };
 
 // Returns a name for messages, such as "a certificate of vpe".

@@ -64,14 +64,30 @@ std::optional<GroundMeasures> ground_measures(const paging::Surface& surface, co
   if (drawing.kind != DrawingKind::kPolygon) return out;
   if (!add_section(surface, directions.back(), directions.front(), out, stop)) return std::nullopt;
   if (!crossing_text(directions).empty()) return out;
-  out.area = ground_area(surface, directions, options, stop);
+  GroundAreaOptions of_area = options;
+  GroundStatisticsOptions of_statistics;
+  of_statistics.most_cells = options.most_cells;
+  // Statistics go over the facets twice.
+  if (options.progress) {
+    of_area.progress = [&](double share) { options.progress(share / 3); };
+    of_statistics.progress = [&](double share) { options.progress((1 + 2 * share) / 3); };
+  }
+  out.area = ground_area(surface, directions, of_area, stop);
   if (!out.area) return std::nullopt;
+  if (!why_no_statistics(directions).empty()) return out;
+  out.statistics = ground_statistics(surface, directions, of_statistics, stop);
+  if (!out.statistics) return std::nullopt;
   return out;
 }
 
 std::string measured_area_text(double area_m2) {
   if (area_m2 >= 1e4) return base::format_significant(area_m2 / 1e6, kAreaDigits) + " km²";
   return base::format_significant(area_m2, kAreaDigits) + " m²";
+}
+
+std::string measured_volume_text(double volume_m3) {
+  if (volume_m3 >= 1e7) return base::format_significant(volume_m3 / 1e9, kAreaDigits) + " km³";
+  return base::format_significant(volume_m3, kAreaDigits) + " m³";
 }
 
 }  // namespace vpe::explore

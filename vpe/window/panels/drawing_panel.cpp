@@ -20,6 +20,28 @@ namespace {
 constexpr std::array<std::pair<const char*, DrawingKind>, 3> kTools{
     {{"Point", DrawingKind::kPoint}, {"Line", DrawingKind::kLine}, {"Polygon", DrawingKind::kPolygon}}};
 
+std::string degrees_text(double value_deg, int decimals, const std::optional<double>& error_deg) {
+  return base::format_fixed(value_deg, decimals) +
+         (error_deg ? " \u00b1 " + base::format_fixed(*error_deg, decimals) : "") + "\u00b0";
+}
+
+std::string slope_text(const explore::GroundStatistics& statistics) {
+  return "mean " + degrees_text(statistics.mean_slope_deg, 1, {}) + ", 90 % below " +
+         degrees_text(statistics.slope_90_deg, 1, {});
+}
+
+std::string dip_text(const explore::GroundStatistics& statistics) {
+  const auto& plane = statistics.plane;
+  if (!plane) return "unknown";
+  return degrees_text(plane->dip_deg, 2, plane->dip_error_deg) + " towards " +
+         degrees_text(plane->dip_azimuth_deg, 0, {});
+}
+
+std::string strike_text(const explore::GroundStatistics& statistics) {
+  const auto& plane = statistics.plane;
+  return plane ? degrees_text(plane->strike_deg, 0, plane->strike_error_deg) : "unknown";
+}
+
 std::string percent(double share) { return std::to_string(static_cast<int>(share * 100)) + " % measured"; }
 
 }  // namespace
@@ -182,6 +204,20 @@ void DrawingPanel::draw_measures(const Drawing& drawing) {
                   if (g.area->is_exact) return text;
                   return text + " at posts of " + explore::measured_length_text(g.area->spacing_m) +
                          "; twice as far apart: " + explore::measured_area_text(g.area->coarser_area_m2);
+                }));
+      const auto statistics = [&](const auto& text) {
+        return ground([&](const explore::GroundMeasures& g) {
+          return g.statistics ? text(*g.statistics) : std::string("unknown");
+        });
+      };
+      table.add("Slope", statistics(slope_text));
+      table.add("Dip", statistics(dip_text));
+      table.add("Strike", statistics(strike_text));
+      table.add("Above the rim", statistics([](const explore::GroundStatistics& s) {
+                  return s.over_rim ? explore::measured_volume_text(s.over_rim->above_m3) : "unknown";
+                }));
+      table.add("Below the rim", statistics([](const explore::GroundStatistics& s) {
+                  return s.over_rim ? explore::measured_volume_text(s.over_rim->below_m3) : "unknown";
                 }));
       if (m != nullptr && m->ground && m->ground->area && m->ground->area->has_nodata)
         table.add("", "part of it has no data");
