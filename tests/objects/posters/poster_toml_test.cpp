@@ -88,5 +88,14 @@ TEST(PosterToml, RefusesWhatIsWrong) {
   EXPECT_NE(error_of(many).find("expected at most 1000 tables [[picture]]"), std::string::npos);
 }
 
+// The scene that the guide names.
+TEST(PosterToml, TheExampleSceneHasItsFiles) {
+  const SceneFile scene =
+      read_scene_file(std::filesystem::path(VPE_SOURCE_DIR) / "scripts/scenes/gale-pictures.scene.toml");
+  EXPECT_EQ(scene.posters.size(), 2U);
+  EXPECT_EQ(scene.kiosks.size(), 1U);
+  for (const std::filesystem::path& file : files_of(scene)) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+}
+
 }  // namespace
 }  // namespace objects
