@@ -8,6 +8,7 @@
 #include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/planet/info/level_section.h"
+#include "vpe/app/planet/info/map_readout.h"
 #include "vpe/app/planet/info/planet_facts.h"
 #include "vpe/app/planet/info/relief_map.h"
 #include "vpe/base/nice_ticks.h"
@@ -17,7 +18,6 @@ namespace vpe::app {
 
 namespace {
 
-constexpr std::size_t kMostMapBytes = 740'000;  // of the PNG: a third more as text
 constexpr double kSteepRelief_deg = 22;  // what the relief of a map is exaggerated to, at its 95th percentile
 constexpr double kMostExaggeration = 50;
 
@@ -96,18 +96,21 @@ std::string planet_page(const std::shared_ptr<const paging::PlanetFile>& planet,
       source_coverage(planet, budget, pool, [&](double part) { progress.show("sources", 0.4 + 0.3 * part); });
   const ReliefLook look = look_of(levels, planet->tree(), meta.radius_m);
   progress.show("map", 0.7);
-  const std::vector<std::uint8_t> png = relief_png(planet, look, kMostMapBytes, budget, pool);
+  const ReliefImages images = relief_images(planet, look, {}, budget, pool);
 
   report::Page page;
   page.title =
       page_text(meta.body) + ", planet file " + page_text(std::filesystem::path(named).filename().string());
   page.generator = "vpe info";
-  page.style = map_style();
+  page.style = map_style() + readout_style();
+  page.script = readout_script();
   if (meta.illustration)
     page.paragraphs.push_back("Some of this planet is made up: sources marked as synthetic are not data.");
   page.sections.push_back({"Planet", {}, {}, {facts_table(file_facts(*planet, named))}});
   report::Section map{"Map", {}, {}, {}};
-  map.figures.push_back(relief_figure(png, look, coverage));
+  map.figures.push_back(relief_figure(images.whole, look, coverage));
+  map.figures.back().markup += readout_markup(elevation_grid(planet, budget, pool));
+  map.figures.push_back(polar_figure(images, coverage));
   page.sections.push_back(std::move(map));
   page.sections.push_back(levels_section(*planet));
 

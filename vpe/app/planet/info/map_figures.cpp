@@ -2,10 +2,13 @@
 #include <array>
 #include <cmath>
 
+#include "vpe/app/planet/info/map_readout.h"
+#include "vpe/app/planet/info/polar_map.h"
 #include "vpe/app/planet/info/relief_map.h"
 #include "vpe/base/nice_ticks.h"
 #include "vpe/base/number.h"
 #include "vpe/core/image/image.h"
+#include "vpe/report/plots/svg.h"
 
 namespace vpe::app {
 
@@ -13,7 +16,7 @@ namespace {
 
 using base::format_fixed;
 
-// The colours of Okabe and Ito, as in vpe/report/plot.cpp.
+// The colours of Okabe and Ito, as in vpe/report/plots/plot.cpp.
 constexpr std::array<base::Rgb, 7> kSourceColours{{{0, 114, 178},
                                                    {213, 94, 0},
                                                    {0, 158, 115},
@@ -110,8 +113,49 @@ std::string source_numbers(const SourceCoverage& coverage) {
 }
 
 std::string map_markup(const std::string& alt, const std::vector<std::uint8_t>& png, const std::string& over) {
-  return "<div class=\"map\"><img alt=\"" + report::escape_markup(alt) + "\" src=\"" + report::data_uri(png) +
-         "\"/><svg viewBox=\"0 0 360 180\" aria-hidden=\"true\">" + over + "</svg></div>";
+  return "<div class=\"map\" data-map=\"plain\"><img alt=\"" + report::escape_markup(alt) + "\" src=\"" +
+         report::data_uri(png) + "\"/><svg viewBox=\"0 0 360 180\" aria-hidden=\"true\">" + over +
+         "</svg></div>";
+}
+
+// The drawing's unit is a hundredth of the distance from the pole to the edge.
+std::string inset_markup(Pole pole, const std::vector<std::uint8_t>& png, const SourceCoverage& coverage) {
+  const bool is_north = pole == Pole::kNorth;
+  std::string path;
+  std::string texts;
+  for (int lat = 60; lat < 90; lat += 10) {
+    const double r = 100 * polar_point(pole, {90, static_cast<double>(is_north ? lat : -lat)}).x;
+    const std::string radius = format_fixed(r, 2);
+    path += "M-" + radius + " 0a" + radius + " " + radius + " 0 1 0 " + format_fixed(2 * r, 2) + " 0a" +
+            radius + " " + radius + " 0 1 0 -" + format_fixed(2 * r, 2) + " 0";
+    texts += letters(1, -r + 4, "m", "start", std::to_string(lat) + "\u00b0 " + (is_north ? "N" : "S"));
+  }
+  for (int lon = 0; lon < 360; lon += 30) {
+    const double sine = std::sin(lon * mars::kRadiansPerDegree);
+    const double down = (is_north ? 1 : -1) * std::cos(lon * mars::kRadiansPerDegree);
+    path += "M" + format_fixed(100 * sine, 2) + " " + format_fixed(100 * down, 2) + "L" +
+            format_fixed(20 * sine, 2) + " " + format_fixed(20 * down, 2);
+    if (lon % 90 == 0)
+      texts += letters(92 * sine, 92 * down + 2, "m", "middle",
+                       std::to_string(lon > 180 ? 360 - lon : lon) + "\u00b0" +
+                           (lon % 180 == 0 ? ""
+                            : lon < 180    ? " E"
+                                           : " W"));
+  }
+  for (std::size_t n = 0; n < coverage.sources.size(); ++n) {
+    const CoveredArea& area = coverage.sources[n];
+    if (!(area.share > 0) || area.share > kNearlyAll) continue;
+    const glm::dvec2 at = polar_point(pole, area.middle);
+    if (std::hypot(at.x, at.y) > 0.97) continue;
+    texts += "<circle class=\"s\" cx=\"" + format_fixed(100 * at.x, 2) + "\" cy=\"" +
+             format_fixed(100 * at.y, 2) + "\" r=\"1.4\"/>" +
+             letters(100 * at.x + 2.5, 100 * at.y - 2.5, "n", "start", std::to_string(n + 1));
+  }
+  const std::string name = is_north ? "north" : "south";
+  return "<div class=\"map pole\" data-map=\"" + name + "\"><img alt=\"Shaded relief map around the " + name +
+         " pole\" src=\"" + report::data_uri(png) +
+         "\"/><svg viewBox=\"-100 -100 200 200\" aria-hidden=\"true\"><path class=\"g\" d=\"" + path + "\"/>" +
+         texts + "</svg></div>";
 }
 
 std::string elevation_legend(const ReliefLook& look) {
@@ -167,9 +211,22 @@ report::Figure relief_figure(const std::vector<std::uint8_t>& png, const ReliefL
   if (has_outlines) caption += " White lines bound the ground of each source.";
   if (!numbers.empty()) caption += " Numbers are those of the table of sources.";
   if (coverage.nodata_share > 0) caption += " Grey stripes: no source has data.";
+  caption +=
+      " Where scripts run, a pointer over a map reads places and elevations, interpolated between points " +
+      base::format_number(kReadoutStep_deg) + " degrees apart.";
   const std::string alt = "Shaded relief map of the whole planet, coloured by elevation from " +
                           base::format_number(look.low_m) + " m to " + base::format_number(look.high_m) + " m";
   return {map_markup(alt, png, over + numbers) + elevation_legend(look), caption};
+}
+
+report::Figure polar_figure(const ReliefImages& images, const SourceCoverage& coverage) {
+  const std::string edge = base::format_number(kPolarLat_deg);
+  return {
+      "<div class=\"poles\">" + inset_markup(Pole::kNorth, images.north, coverage) +
+          inset_markup(Pole::kSouth, images.south, coverage) + "</div>",
+      "The poles, to " + edge +
+          " degrees of latitude, as seen from above each: stereographic, in the colours of the map of "
+          "the whole planet. Longitude 0 is below the north pole and above the south pole. Light comes from the upper left."};
 }
 
 report::Figure coverage_figure(const SourceCoverage& coverage, const std::vector<std::string>& names) {
@@ -199,6 +256,9 @@ std::string map_style() {
 .map { position: relative; width: min(72rem, 100%); }
 .map img { width: 100%; }
 .map > svg { position: absolute; inset: 0; width: 100%; height: 100%; overflow: hidden; }
+.poles { display: flex; flex-wrap: wrap; gap: 1rem; width: min(72rem, 100%); }
+.map.pole { flex: 1 1 16rem; max-width: 30rem; }
+.map.pole img { display: block; border-radius: 50%; }
 .map path { fill: none; vector-effect: non-scaling-stroke; }
 .map .g { stroke: #000; stroke-opacity: .3; }
 .map .u { stroke: #000; stroke-width: 2.6; stroke-opacity: .7; }
@@ -206,8 +266,11 @@ std::string map_style() {
 .map .s { fill: #fff; stroke: #000; stroke-width: .3; }
 .map text { font-size: 3.6px; fill: #fff; stroke: #000; stroke-width: .8px; paint-order: stroke; }
 .map .n { font-size: 4.6px; font-weight: 600; }
+.map.pole text { font-size: 5px; }
+.map.pole .n { font-size: 6.5px; }
 @media (max-width: 40rem) {
   .map text, .map .n { font-size: 9px; stroke-width: 2px; }
+  .map.pole text, .map.pole .n { font-size: 8px; stroke-width: 1.4px; }
   .map .fine { display: none; }
 }
 svg.legend { display: block; max-width: 100%; height: auto; margin-top: .4rem; }
