@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
 #include <random>
 #include <set>
 
@@ -90,6 +94,58 @@ TEST(OverlookParts, LieOnTheirTextures) {
       }
     }
   }
+}
+
+// The shader of a part has no more levels and samples than the part says.
+TEST(OverlookParts, HaveTheLevelsAndSamplesOfTheirPixels) {
+  std::mt19937 random(kSeed);
+  int pixels = 0;
+  int missed = 0;
+  std::map<std::pair<std::size_t, int>, int> seen;
+  for (const PanoramaMap& map : maps()) {
+    const std::vector<LevelGrid> grids = grids_of(map);
+    for (int n = 0; n < 24; ++n) {
+      const vpe::core::View view = random_view(random);
+      const std::vector<Part> parts =
+          choose_parts(map, grids, view, {}, [](const TextureKey&) { return true; });
+      for (int k = 0; k < 200; ++k) {
+        const double x = std::uniform_real_distribution(1.0, 319.0)(random);
+        const double y = std::uniform_real_distribution(1.0, 199.0)(random);
+        const auto place = [&](double px, double py) {
+          return panorama::shown_place(map, panorama::to_direction(vpe::core::pixel_ray(view, px, py)));
+        };
+        const auto here = place(x, y);
+        const auto right = place(x + 1, y);
+        const auto below = place(x, y + 1);
+        if (!here || !right || !below) continue;
+        const auto off = [&](const glm::dvec2& there) {
+          return glm::dvec2(std::remainder(there.x - here->x, map.turn_px), there.y - here->y);
+        };
+        const panorama::Footprint footprint = panorama::footprint_of(off(*right), off(*below));
+        const auto part = std::ranges::find_if(parts, [&](const Part& p) { return holds(p.rectangle, *here); });
+        if (part == parts.end()) continue;
+        ++pixels;
+        ++seen[std::pair(part->textures.size(), part->most_samples)];
+        const int level = panorama::level_of_footprint(grids, footprint.thin_px);
+        const bool is_mixed = footprint.thin_px > grids[static_cast<std::size_t>(level)].reduction * (1 + 1e-9);
+        const int last = std::min(level + (is_mixed ? 1 : 0), static_cast<int>(grids.size()) - 1);
+        missed += level < part->textures.front().level || last > part->textures.back().level ||
+                          footprint.samples > part->most_samples
+                      ? 1
+                      : 0;
+      }
+    }
+  }
+  std::printf("%d of %d pixels need more than their part has\n", missed, pixels);
+  EXPECT_GT(pixels, 5000);
+  EXPECT_LT(missed, pixels / 2000);
+  // Parts for one level and for several, for one sample, two and more.
+  for (const int samples : {1, 2, 16})
+    EXPECT_TRUE(std::ranges::any_of(seen, [&](const auto& one) { return one.first.second == samples; }))
+        << samples;
+  for (const std::size_t levels : {std::size_t{1}, std::size_t{2}, std::size_t{3}})
+    EXPECT_TRUE(std::ranges::any_of(seen, [&](const auto& one) { return one.first.first == levels; }))
+        << levels;
 }
 
 TEST(OverlookParts, CoarserTexturesStandIn) {

@@ -21,7 +21,7 @@ constexpr std::size_t kTexture_bytes = std::size_t{kBorderedSide_px} * kBordered
 constexpr std::size_t kFloatsPerVertex = 5;
 constexpr GLint kPlaceLocation = 0;
 constexpr GLint kReductionLocation = 4;
-constexpr GLint kLevelsLocation = 5;
+constexpr GLint kPerOctaveLocation = 5;
 
 gl::Program make_overlook_program(const std::string& label, std::string_view fragment) {
   return gl::make_program(label, std::string(shader_text::kPartVertex).c_str(), std::string(fragment).c_str());
@@ -56,7 +56,6 @@ OverlookRenderer::OverlookRenderer(std::shared_ptr<gl::Context> context, const p
   options_.budget_bytes = std::max(options_.budget_bytes, OverlookOptions::kMinBudget_bytes);
   grids_ = panorama::level_grids(image.levels(), map, options.origin);
   enlarged_ = make_overlook_program("enlarged panorama", shader_text::kEnlargedFragment);
-  filtered_ = make_overlook_program("panorama", shader_text::kFilteredFragment);
   array_ = gl::VertexArray::make();
   vertices_ = gl::Buffer::make();
   indices_ = gl::Buffer::make();
@@ -132,9 +131,22 @@ void OverlookRenderer::upload(const std::vector<Part>& parts, const core::View& 
                     index_data_.data(), GL_STREAM_DRAW);
 }
 
+// Returns the program for parts of so many levels and samples.
+const gl::Program& OverlookRenderer::filtered(std::size_t levels, int samples) {
+  gl::Program& program = filtered_[{levels, samples}];
+  if (program.name() != 0) return program;
+  std::string text(shader_text::kFilteredFragment);
+  const std::size_t after = text.find('\n', text.find("#version")) + 1;
+  text.insert(after, "#define kLevels " + std::to_string(levels) + "\n#define kSamples " +
+                         std::to_string(samples) + "\n");
+  program = make_overlook_program("panorama", text);
+  return program;
+}
+
 void OverlookRenderer::draw_part(const Part& part, std::size_t first_index, std::size_t indices) {
   std::array<GLfloat, 4 * Part::kMostLevels> place{};
-  std::array<GLfloat, Part::kMostLevels> reduction{};
+  std::array<GLfloat, Part::kMostLevels> reduction;
+  reduction.fill(1);  // of levels that are not there
   for (std::size_t n = 0; n < part.textures.size(); ++n) {
     const TextureKey& key = part.textures[n];
     const panorama::LevelGrid& grid = grids_[static_cast<std::size_t>(key.level)];
@@ -147,12 +159,16 @@ void OverlookRenderer::draw_part(const Part& part, std::size_t first_index, std:
     reduction[n] = static_cast<GLfloat>(grid.reduction);
     glBindTextureUnit(static_cast<GLuint>(n), textures_.at(key).name.name());
   }
-  const GLuint program = part.is_enlarged ? enlarged_.name() : filtered_.name();
+  const GLuint program =
+      part.is_enlarged ? enlarged_.name() : filtered(part.textures.size(), part.most_samples).name();
   glUseProgram(program);
   glUniform4fv(kPlaceLocation, static_cast<GLsizei>(Part::kMostLevels), place.data());
   if (!part.is_enlarged) {
     glUniform4fv(kReductionLocation, 1, reduction.data());
-    glUniform1i(kLevelsLocation, static_cast<GLint>(part.textures.size()));
+    std::array<GLfloat, Part::kMostLevels> per_octave{};
+    for (std::size_t n = 0; n + 1 < part.textures.size(); ++n)
+      per_octave[n] = 1 / std::log2(reduction[n + 1] / reduction[n]);
+    glUniform4fv(kPerOctaveLocation, 1, per_octave.data());
   }
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(first_index * sizeof(std::uint32_t)));

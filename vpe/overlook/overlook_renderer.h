@@ -70,6 +70,7 @@ class OverlookRenderer {
   void read(const std::vector<TextureKey>& keys);
   void upload(const std::vector<Part>& parts, const core::View& view);
   void draw_part(const Part& part, std::size_t first_index, std::size_t indices);
+  const gl::Program& filtered(std::size_t levels, int samples);
   void evict();
 
   std::shared_ptr<gl::Context> context_;
@@ -80,7 +81,8 @@ class OverlookRenderer {
   std::map<TextureKey, Texture> textures_;
   std::optional<gl::Target> target_;
   gl::Program enlarged_;
-  gl::Program filtered_;
+  std::map<std::pair<std::size_t, int>, gl::Program>
+      filtered_;  // by levels and most samples, once one is drawn
   gl::VertexArray array_;
   gl::Buffer vertices_;
   gl::Buffer indices_;

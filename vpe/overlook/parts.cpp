@@ -31,6 +31,14 @@ struct Range {
   }
 };
 
+// What the footprints of a part's pixels are, in pixels of the image.
+struct Footprints {
+  Range thin;     // Footprint::thin_px
+  Range longest;  // Footprint::longest_px
+  Range length;   // of their longer side, in widths of a sample
+  Range bare;     // the shorter side, which a sample is at least as wide as, and at least 1
+};
+
 class Chooser {
  public:
   Chooser(const PanoramaMap& map, std::span<const LevelGrid> grids, const core::View& view,
@@ -87,7 +95,7 @@ class Chooser {
   }
 
   // Adds the footprints of the view's pixels at a place.
-  void add_footprint(int facet, double x, double y, Range& thin, Range& longest) const {
+  void add_footprint(int facet, double x, double y, Footprints& footprints) const {
     const glm::dvec3 direction = glm::normalize(direction_vector(map_, facet, x, y));
     const core::Projected p = core::project(view_, view_.camera.position_m + direction);
     if (p.behind) return;
@@ -98,11 +106,15 @@ class Chooser {
     const auto to = [&](const glm::dvec2& there) {
       return glm::dvec2(std::remainder(there.x - here.x, map_.turn_px), there.y - here.y);
     };
-    const panorama::Footprint footprint =
-        panorama::footprint_of(to(place(p.xy.x + 1, p.xy.y)), to(place(p.xy.x, p.xy.y + 1)));
+    const glm::dvec2 across = to(place(p.xy.x + 1, p.xy.y));
+    const glm::dvec2 down = to(place(p.xy.x, p.xy.y + 1));
+    const panorama::Footprint footprint = panorama::footprint_of(across, down);
     if (!std::isfinite(footprint.thin_px)) return;
-    thin.add(footprint.thin_px);
-    longest.add(footprint.longest_px);
+    footprints.thin.add(footprint.thin_px);
+    footprints.longest.add(footprint.longest_px);
+    footprints.length.add(footprint.longest_px / footprint.thin_px);
+    const double area_px2 = std::abs(across.x * down.y - across.y * down.x);
+    if (footprint.longest_px > 0) footprints.bare.add(area_px2 / footprint.longest_px);
   }
 
   void look_at(const Rectangle& r, int facet, int divisions) {
@@ -114,18 +126,25 @@ class Chooser {
       divide(r, facet, divisions);
       return;
     }
-    Range thin;
-    Range longest;
+    Footprints footprints;
     for (const double s : {0.0, 0.5, 1.0}) {
       for (const double t : {0.0, 0.5, 1.0})
-        add_footprint(facet, std::lerp(r.left, r.right, s), std::lerp(r.top, r.bottom, t), thin, longest);
+        add_footprint(facet, std::lerp(r.left, r.right, s), std::lerp(r.top, r.bottom, t), footprints);
     }
     const int coarsest = static_cast<int>(grids_.size()) - 1;
-    if (longest.high == 0) thin = {1e300, 1e300};
-    const bool is_enlarged = longest.high > 0 && longest.high * kMargin <= 1.0;
-    const int finest = panorama::level_of_footprint(grids_, thin.low / kMargin);
+    const bool is_seen = footprints.longest.high > 0;
+    if (!is_seen) footprints.thin = {1e300, 1e300};
+    const bool is_enlarged = is_seen && footprints.longest.high * kMargin <= 1.0;
+    // Samples one pixel wide are all of the image itself.
+    const bool is_of_image = is_enlarged || (is_seen && footprints.bare.high * kMargin <= 1.0 &&
+                                             footprints.longest.high * kMargin <= panorama::kMostSamples);
+    const double length = footprints.length.high * kMargin * kMargin;
+    most_samples_ = !is_seen || length - 1e-3 > 2 ? 16 : length - 1e-3 > 1 ? 2 : 1;
+    const int finest = panorama::level_of_footprint(grids_, footprints.thin.low / kMargin);
     const int last =
-        is_enlarged ? 0 : std::min(coarsest, panorama::level_of_footprint(grids_, thin.high * kMargin) + 1);
+        is_of_image
+            ? 0
+            : std::min(coarsest, panorama::level_of_footprint(grids_, footprints.thin.high * kMargin) + 1);
     const bool is_small = longer * focal_px_ < 1.0;
     if (last - finest >= static_cast<int>(Part::kMostLevels) && !is_small && divisions < kMostDivisions) {
       divide(r, facet, divisions);
@@ -199,6 +218,7 @@ class Chooser {
           continue;
         }
         added.is_enlarged = is_enlarged;
+        added.most_samples = is_enlarged ? 1 : most_samples_;
         added.cuts = cuts_of(map_, added.rectangle, allowed_rad_);
         parts_.push_back(std::move(added));
       }
@@ -213,7 +233,8 @@ class Chooser {
   std::array<core::Plane, 4> sides_;
   double focal_px_;
   double corner_stretch_;
-  double allowed_rad_ = 0;
+  double allowed_rad_ = 0;  // of the rectangle that is looked at
+  int most_samples_ = 16;   // likewise
   std::vector<Part> parts_;
 };
 

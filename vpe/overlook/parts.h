@@ -33,6 +33,8 @@ struct Part {
   std::vector<TextureKey>
       textures;  // of successive levels, the finest first; the rectangle lies on one of each
   Cuts cuts;
+  // No pixel of the view takes more samples of the image: 1, 2, or 16 for any number.
+  int most_samples = 16;
   bool is_enlarged =
       false;  // each pixel of the view is at most one of the image wide: one level and one sample
 };
