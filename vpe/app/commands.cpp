@@ -21,10 +21,10 @@ namespace vpe::app {
 int run(int argc, char** argv) {
   // In the order of --help.
   static constexpr AddCommand kCommands[] = {
-      add_get,     add_build,    add_patch,    add_merge,    add_info,   add_verify, add_query,
-      add_profile, add_measure,  add_compare,  add_horizon,  add_sight,  add_sun,    add_match,
-      add_render,  add_fly,      add_panorama, add_traverse, add_object, add_sculpt, add_surface,
-      add_explore, add_overlook, add_report,   add_settings, add_doctor, add_manual};
+      add_get,     add_build,   add_patch,    add_merge,    add_info,     add_verify, add_find,
+      add_query,   add_profile, add_measure,  add_compare,  add_horizon,  add_sight,  add_sun,
+      add_match,   add_render,  add_fly,      add_panorama, add_traverse, add_object, add_sculpt,
+      add_surface, add_explore, add_overlook, add_report,   add_settings, add_doctor, add_manual};
   return run_program(argc, argv, kCommands);
 }
 

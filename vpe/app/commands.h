@@ -12,6 +12,7 @@ struct Common;
 // Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
 void add_query(CLI::App& program, Common& common);
 void add_profile(CLI::App& program, Common& common);
+void add_find(CLI::App& program, Common& common);
 void add_compare(CLI::App& program, Common& common);
 void add_traverse(CLI::App& program, Common& common);
 void add_explore(CLI::App& program, Common& common);

@@ -322,7 +322,10 @@ void explore(const ExploreArguments& given, const Common& common) {
     note_illustration(planet->meta(), common.quiet);
     make_interest_planetocentric(here.image.interest, here.latitude, planet->meta());
     window::ExploreSetup setup = make_setup(here, common, preferences, last);
-    if (!here.pose.empty()) {
+    if (const ParsedPose named = here.pose.empty() ? ParsedPose{} : parse_pose("--pose", here.pose);
+        named.is_of_name) {
+      setup.session.start = resolve(named, planet, setup.session.settings.values().exaggeration);
+    } else if (!here.pose.empty()) {
       mars::Pose& start = *setup.session.start;
       start.lat_deg =
           planetocentric({start.lon_deg, start.lat_deg}, here.latitude, planet->meta(), common.quiet).lat_deg;
@@ -415,8 +418,8 @@ void add_explore(CLI::App& program, Common& common) {
       "Planet file or DEM: shown left of a line that the mouse drags, with PLANET on its right");
   command->add_option(
       "--pose", arguments->pose,
-      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere "
-      "(default: a view of the whole planet)");
+      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere; or the name of "
+      "a place of Mars (default: a view of the whole planet)");
   add_latitude_option(*command, arguments->latitude);
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT of the window, pixels (default: the last size)");
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")

@@ -267,7 +267,7 @@ void render(RenderArguments& arguments, const Common& common) {
     pose.lat_deg =
         planetocentric({pose.lon_deg, pose.lat_deg}, arguments.latitude, planet->meta(), quiet).lat_deg;
   };
-  convert(parsed.pose.pose, common.quiet);
+  if (!parsed.pose.is_of_name) convert(parsed.pose.pose, common.quiet);
   if (parsed.cull_pose) convert(*parsed.cull_pose, true);
   make_interest_planetocentric(arguments.image.interest, arguments.latitude, planet->meta());
   parsed.request.interest = parse_interest(arguments.image);
@@ -342,8 +342,10 @@ void add_render(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = add_command(program, "render", "Draw one image", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--pose", arguments->pose,
-                      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera: degrees; ALT in metres above the sphere");
+  command->add_option(
+      "--pose", arguments->pose,
+      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera: degrees; ALT in metres above the sphere; or the name of a "
+      "place of Mars ('vpe find')");
   add_latitude_option(*command, arguments->latitude);
   command
       ->add_option("--height", arguments->height_m,

@@ -93,7 +93,12 @@ ParsedRender parse_view(const RenderArguments& arguments) {
       !arguments.range.empty() || !arguments.certificate.empty() || overlay::needs_range(settings);
   request.paging.timeout_s = arguments.image.wait_s;
   parsed.pose = parse_pose("--pose", *arguments.pose, arguments.height_m);
-  if (arguments.cull_from) parsed.cull_pose = parse_pose("--cull-from", *arguments.cull_from).pose;
+  if (arguments.cull_from) {
+    const ParsedPose cull = parse_pose("--cull-from", *arguments.cull_from);
+    if (cull.is_of_name)
+      throw UsageError("--cull-from '" + *arguments.cull_from + "': give numbers, and not a name");
+    parsed.cull_pose = cull.pose;
+  }
   return parsed;
 }
 
