@@ -26,7 +26,7 @@ std::string degrees_text(double value_deg, int decimals, const std::optional<dou
 }
 
 std::string slope_text(const explore::GroundStatistics& statistics) {
-  return "mean " + degrees_text(statistics.mean_slope_deg, 1, {}) + ", 90 % below " +
+  return "mean " + degrees_text(statistics.mean_slope_deg, 1, {}) + ", 90 % < " +
          degrees_text(statistics.slope_90_deg, 1, {});
 }
 
