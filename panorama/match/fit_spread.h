@@ -1,4 +1,4 @@
-// How sure a fit is, from blocks of columns. Private to panorama.
+// Computes how sure a fit is, from blocks of columns. Private to panorama.
 #pragma once
 
 #include <span>

@@ -132,7 +132,7 @@ class AnyScene {
     return placing;
   }
 
-  // What belongs to other forms of an image keeps its usual value, for no file holds it.
+  // Members that belong to other forms of an image keep their usual values, for no file holds them.
   PosterEntry poster() {
     PosterEntry poster;
     poster.name = maybe_name();

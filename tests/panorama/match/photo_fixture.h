@@ -52,7 +52,7 @@ inline SkylineProfile ridges(std::uint32_t seed, double size_deg = 1.5, std::siz
 
 inline SkylineProfile flat() { return SkylineProfile(std::vector<double>(720, 0.3)); }
 
-// What spoils a photograph.
+// Describes faults of a photograph.
 struct Spoiling {
   double noise = 5;          // standard deviation of the pixels, of 255
   double vignetting = 0.35;  // loss of light in the corners

@@ -1,4 +1,4 @@
-// What vpe measure prints of a polygon: JSON, or lines for people.
+// Writes what vpe measure prints of a polygon: JSON, or lines for people.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -19,7 +19,7 @@ struct SunRidge {
   double range_m = 0;        // from the viewpoint
   mars::LonLat place;
   std::optional<double> ground_error_m;  // sum of ground_error_m() there and at the viewpoint
-  // What that changes of a time at most; nullopt where it is not known, and where the sun hardly climbs.
+  // Bounds what that changes of a time; nullopt where it is not known, and where the sun hardly climbs.
   std::optional<double> error_s;
 };
 

@@ -1,4 +1,4 @@
-// What the ground along a line of sight rests on: resolution, error, sources, gaps.
+// Summarises the ground along a line of sight: resolution, error, sources, gaps.
 #pragma once
 
 #include <set>

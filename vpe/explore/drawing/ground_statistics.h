@@ -47,7 +47,7 @@ struct GroundStatistics {
   double highest_m = 0;
   double mean_m = 0;  // over the area on the sphere
 
-  // Of facets against the vertical in their middles, over the area on the sphere; percentiles to 0.01 degrees.
+  // Describe slopes of facets against the vertical in their middles, over the area on the sphere; percentiles to 0.01 degrees.
   double mean_slope_deg = 0;
   double rms_slope_deg = 0;
   double median_slope_deg = 0;
