@@ -4,68 +4,50 @@
 #include <glm/geometric.hpp>
 
 #include "lod/tree/posts.h"
+#include "paging/surface/place_cursor.h"
 
 namespace paging {
 
-namespace {
-
-std::optional<int> nearest_source(const Surface& surface, const TileSources& sources, const SurfacePoint& point,
-                                  const glm::dvec3& direction) {
-  if (point.nodata) return std::nullopt;
-  if (sources.of_post.empty()) return sources.at(0);
-  return sources.at(nearest_post(*surface.tile(point.tile), mars::chart_point(direction)));
+SlopeAndAspect slope_and_aspect(const glm::dvec3& normal, mars::LonLat place) {
+  const mars::LocalFrame frame = mars::local_frame(place);
+  const double up = glm::dot(normal, frame.up);
+  const double east = glm::dot(normal, frame.east);
+  const double north = glm::dot(normal, frame.north);
+  SlopeAndAspect out;
+  out.slope_deg = std::atan2(std::hypot(east, north), up) / mars::kRadiansPerDegree;
+  out.aspect_deg = std::atan2(east, north) / mars::kRadiansPerDegree;
+  if (out.aspect_deg < 0) out.aspect_deg += 360;
+  return out;
 }
-
-ResamplingError of_source(const std::vector<SourceResampling>& list, int source) {
-  for (const SourceResampling& own : list)
-    if (own.source == source) return own.error;
-  return {};
-}
-
-// Files before format 1.3 do not tell sources apart.
-ResamplingError level_resampling(const PlanetMeta& meta, int level, int source) {
-  for (const LevelSummary& summary : meta.levels) {
-    if (summary.level != level) continue;
-    return meta.sources.size() == 1 ? summary.resampling : of_source(summary.resampling_by_source, source);
-  }
-  return {};
-}
-
-}  // namespace
 
 PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   PlaceAnswer a;
   a.place = {mars::normalize_lon_deg(place.lon_deg), place.lat_deg};
-  const glm::dvec3 direction = mars::direction(place);
-  const SurfacePoint point = surface.at(direction);
+  PlaceCursor cursor(surface);
+  const SurfacePoint& point = cursor.move_to(mars::direction(place));
   const PlanetMeta& meta = surface.planet().meta();
   a.nodata = point.nodata;
   a.elevation_m = point.height_m;
-  const mars::LocalFrame frame = mars::local_frame(place);
-  const double up = glm::dot(point.normal, frame.up);
-  const double east = glm::dot(point.normal, frame.east);
-  const double north = glm::dot(point.normal, frame.north);
-  a.slope_deg = std::atan2(std::hypot(east, north), up) / mars::kRadiansPerDegree;
-  a.aspect_deg = std::atan2(east, north) / mars::kRadiansPerDegree;
-  if (a.aspect_deg < 0) a.aspect_deg += 360;
+  const SlopeAndAspect slope = slope_and_aspect(point.normal, place);
+  a.slope_deg = slope.slope_deg;
+  a.aspect_deg = slope.aspect_deg;
   a.level = point.tile.level;
   a.spacing_m = lod::post_spacing_m(point.tile.level, meta.tile.intervals(), meta.radius_m);
   a.geometric_error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
   a.planet_resampling = meta.resampling;
-  const auto sources = surface.sources(point.tile);
-  a.tile_sources = sources->of_tile;
-  a.source = nearest_source(surface, *sources, point, direction);
+  a.tile_sources = cursor.sources().of_tile;
+  a.source = cursor.source();
   if (!a.source) return a;
-  a.resampling = of_source(sources->resampling, *a.source);
-  if (a.resampling.posts > 0) return a;
-  a.resampling = level_resampling(meta, point.tile.level, *a.source);
-  a.resampling_of_level = a.resampling.posts > 0;
+  const PlaceCursor::Resampling resampling = cursor.resampling(*a.source);
+  a.resampling = resampling.error;
+  a.resampling_of_level = resampling.of_level;
   return a;
 }
 
 std::optional<int> source_at(const Surface& surface, const glm::dvec3& direction) {
-  const SurfacePoint point = surface.at(direction);
-  return nearest_source(surface, *surface.sources(point.tile), point, direction);
+  PlaceCursor cursor(surface);
+  cursor.move_to(direction);
+  return cursor.source();
 }
 
 std::optional<bool> is_synthetic(const Surface& surface, const glm::dvec3& direction) {

@@ -37,6 +37,14 @@ struct PlaceAnswer {
 // Surface::at(). Any thread may call it. Throws PlanetError.
 PlaceAnswer query(const Surface& surface, mars::LonLat place);
 
+// Holds PlaceAnswer::slope_deg and aspect_deg.
+struct SlopeAndAspect {
+  double slope_deg = 0;
+  double aspect_deg = 0;
+};
+// Returns those of a facet by its normal, outward and body-fixed, at a place. Pure.
+SlopeAndAspect slope_and_aspect(const glm::dvec3& normal, mars::LonLat place);
+
 // Returns the source of the nearest post in a direction (of any length but 0), as PlaceAnswer::source. Throws
 // PlanetError.
 std::optional<int> source_at(const Surface& surface, const glm::dvec3& direction);

@@ -6,6 +6,7 @@
 
 #include "lod/tree/facet_mask.h"
 #include "paging/planet/planet_user.h"
+#include "paging/surface/tile_place.h"
 
 namespace paging {
 
@@ -126,19 +127,6 @@ std::shared_ptr<const SurfaceTile> Surface::exaggerated(const TileVersion& versi
   });
 }
 
-namespace {
-
-lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& point) {
-  lod::TileKey key = lod::tile_at(point, 0);
-  for (const lod::TileInfo* info = tree.find(key); info != nullptr && info->has_children;
-       info = tree.find(key)) {
-    key = lod::tile_at(point, key.level + 1);
-  }
-  return key;
-}
-
-}  // namespace
-
 std::shared_ptr<const TileSources> Surface::sources(const lod::TileKey& key) const {
   return sources_.get(version(key), [&] {
     auto made = std::make_shared<const TileSources>(planet_->sources(key));
@@ -147,43 +135,32 @@ std::shared_ptr<const TileSources> Surface::sources(const lod::TileKey& key) con
   });
 }
 
-namespace {
-
-// Holds a place among grid lines: the interval, and the fraction of it that lies before the place.
-struct PlaceBetweenLines {
-  std::size_t interval = 0;
-  double fraction = 0;
-};
-
-PlaceBetweenLines place_between(const std::vector<double>& lines, double x) {
-  const auto n =
-      static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, x) - lines.begin() - 1);
-  return {n, std::clamp((x - lines[n]) / (lines[n + 1] - lines[n]), 0.0, 1.0)};
-}
-
-}  // namespace
-
 std::size_t nearest_post(const SurfaceTile& tile, const mars::ChartPoint& point) {
   const auto nearest = [](const PlaceBetweenLines& at) { return at.interval + (at.fraction > 0.5 ? 1 : 0); };
   return nearest(place_between(tile.lines.v, point.v)) * static_cast<std::size_t>(tile.data.posts.side()) +
          nearest(place_between(tile.lines.u, point.u));
 }
 
-SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const {
-  const mars::ChartPoint point = mars::chart_point(direction);
+SurfacePoint point_in(const SurfaceTile& tile, const mars::ChartPoint& point, double planet_radius_m,
+                      double exaggeration) {
   SurfacePoint out;
-  out.tile = finest_tile(planet_->tree(), point);
-  const auto tile = this->tile(out.tile, exaggeration);
-  out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(),
+  out.tile = tile.data.posts.key;
+  out.height_m = lod::surface_height(tile.data.posts, tile.lines, point.u, point.v, planet_radius_m,
                                      &out.normal, exaggeration);
-  out.radius_m = planet_radius_m() + out.height_m;
-  if (!tile->data.nodata.empty()) {
-    const auto [i, x] = place_between(tile->lines.u, point.u);
-    const auto [j, y] = place_between(tile->lines.v, point.v);
-    const auto side = static_cast<std::size_t>(tile->data.posts.side());
-    out.nodata = lod::is_flagged(tile->data.nodata, j * side + i, side, x, y);
+  out.radius_m = planet_radius_m + out.height_m;
+  if (!tile.data.nodata.empty()) {
+    const auto [i, x] = place_between(tile.lines.u, point.u);
+    const auto [j, y] = place_between(tile.lines.v, point.v);
+    const auto side = static_cast<std::size_t>(tile.data.posts.side());
+    out.nodata = lod::is_flagged(tile.data.nodata, j * side + i, side, x, y);
   }
   return out;
+}
+
+SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const {
+  const mars::ChartPoint point = mars::chart_point(direction);
+  const auto tile = this->tile(finest_tile(planet_->tree(), point), exaggeration);
+  return point_in(*tile, point, planet_radius_m(), exaggeration);
 }
 
 double Surface::readable_radius_m(const glm::dvec3& direction, double exaggeration) const {
