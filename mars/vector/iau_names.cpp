@@ -1,0 +1,85 @@
+#include "mars/vector/iau_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <string_view>
+
+namespace mars {
+namespace {
+
+// Returns letters and digits in groups with one underscore between: what is the same in all kinds of WKT.
+std::string plain_words(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      text += c;
+    } else if (!text.empty() && text.back() != '_') {
+      text += '_';
+    }
+  }
+  if (text.ends_with('_')) text.pop_back();
+  return text.starts_with("GCS_") ? text.substr(4) : text;
+}
+
+std::string code_of_name(const std::string& words) {
+  int count = 0;
+  OSRCRSInfo** list = OSRGetCRSInfoListFromDatabase("IAU_2015", nullptr, &count);
+  std::string code;
+  for (int i = 0; i < count && code.empty(); ++i) {
+    if (words == plain_words(list[i]->pszName)) code = list[i]->pszCode;
+  }
+  OSRDestroyCRSInfoList(list);
+  return code;
+}
+
+std::optional<OGRSpatialReference> system_of(const std::string& code) {
+  OGRSpatialReference found;
+  if (code.empty() ||
+      found.SetFromUserInput(("IAU_2015:" + code).c_str(),
+                             OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
+    return std::nullopt;
+  return found;
+}
+
+bool is_equal(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
+
+bool agree(const OGRSpatialReference& a, const OGRSpatialReference& b) {
+  if (!is_equal(a.GetSemiMajor(), b.GetSemiMajor()) ||
+      std::abs(a.GetInvFlattening() - b.GetInvFlattening()) > 1e-6 || a.IsProjected() != b.IsProjected())
+    return false;
+  if (a.IsProjected() == 0) return true;
+  return std::ranges::all_of(
+      std::array{SRS_PP_CENTRAL_MERIDIAN, SRS_PP_LATITUDE_OF_ORIGIN, SRS_PP_STANDARD_PARALLEL_1,
+                 SRS_PP_STANDARD_PARALLEL_2, SRS_PP_FALSE_EASTING, SRS_PP_FALSE_NORTHING},
+      [&](const char* key) { return is_equal(a.GetNormProjParm(key, 0), b.GetNormProjParm(key, 0)); });
+}
+
+}  // namespace
+
+std::optional<OGRSpatialReference> with_iau_axes(const OGRSpatialReference& crs) {
+  const char* name = crs.GetName();
+  const std::string words = plain_words(name == nullptr ? "" : name);
+  // Systems of a sphere lose nothing, and the list of all names is long.
+  if (words.find("_2015_Ographic") == std::string::npos && words.find("_2015_Ocentric") == std::string::npos)
+    return std::nullopt;
+  const char* authority = crs.GetAuthorityName(nullptr);
+  const char* own_code = crs.GetAuthorityCode(nullptr);
+  const bool has_code =
+      authority != nullptr && own_code != nullptr && std::string_view(authority).starts_with("IAU");
+  auto found = system_of(has_code ? own_code : code_of_name(words));
+  if (!found || !agree(crs, *found)) return std::nullopt;
+  return found;
+}
+
+std::string iau_sphere_code(const std::string& body, double radius_m) {
+  const std::string code = code_of_name(plain_words(body + " (2015) - Sphere / Ocentric"));
+  const auto found = system_of(code);
+  return found && found->IsGeographic() != 0 && is_equal(found->GetSemiMajor(), radius_m) &&
+                 found->GetInvFlattening() == 0
+             ? code
+             : "";
+}
+
+}  // namespace mars
