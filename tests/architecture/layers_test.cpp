@@ -28,10 +28,10 @@ struct Layer {
 };
 
 // Every module that a room of vpe/app may use.
-const std::vector<std::string> kBelowApp{"vpe/base",   "mars",      "vpe/core",    "cull",        "lod",
-                                         "objects",    "relief",    "paging",      "scripts",     "vpe/overlay",
-                                         "vpe/gl",     "vpe/voxel", "panorama",    "vpe/explore", "vpe/report",
-                                         "vpe/window", "vpe/warp",  "vpe/overlook"};
+const std::vector<std::string> kBelowApp{
+    "vpe/base",   "mars",       "vpe/core",    "cull",         "lod",       "objects",  "relief",
+    "paging",     "scripts",    "vpe/overlay", "vpe/gl",       "vpe/voxel", "panorama", "vpe/explore",
+    "vpe/report", "vpe/window", "vpe/warp",    "vpe/overlook", "vpe/map"};
 
 std::vector<std::string> below_app(std::vector<std::string> rooms) {
   rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
@@ -59,6 +59,16 @@ const std::vector<Layer>& layers() {
        "mars",
        {"vpe/base", "mars/geodesy", "mars/sources", "mars/remote", "mars/raster/gdal", "mars/raster/placement",
         "mars/raster"},
+       false,
+       true},
+      {"mars/raster/output",
+       "mars",
+       {"vpe/base", "mars/geodesy", "mars/sources", "mars/raster/gdal", "mars/raster"},
+       false,
+       true},
+      {"mars/vector",
+       "mars",
+       {"vpe/base", "mars/geodesy", "mars/sources", "mars/raster/gdal", "mars/raster/placement", "mars/raster"},
        false,
        true},
       {"mars/embedded",
@@ -174,6 +184,10 @@ const std::vector<Layer>& layers() {
         "vpe/explore/drawing", "vpe/explore"}},
       {"vpe/report/plots", "vpe::report", {"vpe/base"}},
       {"vpe/report", "vpe::report", {"vpe/base", "mars", "vpe/core", "vpe/report/plots"}},
+      {"vpe/map", "vpe::map", {"vpe/base", "mars", "lod", "paging"}},
+      {"vpe/map/viewshed", "vpe::map", {"vpe/base", "vpe/map"}},
+      {"vpe/map/contour", "vpe::map", {"vpe/base", "vpe/map"}},
+      {"vpe/map/route", "vpe::map", {"vpe/base", "vpe/map"}},
       {"vpe/window/workers",
        "vpe::window",
        {"vpe/base", "mars", "vpe/core", "paging", "relief", "scripts", "vpe/explore", "vpe/warp"}},
@@ -228,6 +242,10 @@ const std::vector<Layer>& layers() {
       {"vpe/app/get", "vpe::app", below_app({"vpe/app/cli"}), false, false, false, true},
       {"vpe/app/planet", "vpe::app", below_app({"vpe/app/cli"}), true},
       {"vpe/app/planet/info", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},
+      {"vpe/app/map", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},
+      {"vpe/app/contour", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/map"})},
+      {"vpe/app/route", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/contour"})},
+      {"vpe/app/viewshed", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/map"})},
       {"vpe/app/measure", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},
       {"vpe/app/sun", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},
       {"vpe/app/visibility", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"})},

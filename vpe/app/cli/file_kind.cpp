@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "paging/planet/planet_meta.h"
+#include "paging/planet/sqlite.h"
 #include "vpe/core/image/tiff_handle.h"
 
 namespace vpe::app {
@@ -66,6 +67,23 @@ bool is_range_tiff(const fs::path& file) {
   });
 }
 
+bool is_own_geopackage(const fs::path& file) {
+  try {
+    paging::Database db(file.string(), paging::Database::Mode::kReadOnly);
+    return db.integer("SELECT count(*) FROM gpkg_contents WHERE description LIKE 'vpe %'") > 0;
+  } catch (const paging::DatabaseError&) {
+    return false;
+  }
+}
+
+bool is_map_tiff(const fs::path& file) {
+  constexpr std::uint32_t kGeoKeys = 34735;
+  const core::TiffHandle tiff = open_tiff(file);
+  std::uint32_t count = 0;
+  const void* data = nullptr;
+  return is_own_tiff(tiff) && TIFFGetField(tiff.get(), kGeoKeys, &count, &data) == 1;
+}
+
 // Returns true if the manifest of this film lies beside it, or segments that it was joined from.
 bool is_own_video(const fs::path& film) {
   std::error_code none;
@@ -98,6 +116,8 @@ const char* name_of(FileKind kind) {
     case FileKind::kVolume: return "a volume of vpe";
     case FileKind::kPlanetPage: return "a page of 'vpe info'";
     case FileKind::kPlot: return "an SVG file";
+    case FileKind::kMap: return "a map of vpe";
+    case FileKind::kFeatures: return "GeoJSON or a GeoPackage of vpe";
   }
   return "";
 }
@@ -128,6 +148,9 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
     case FileKind::kSticks: return head.starts_with("VPESTICK");
     case FileKind::kVolume: return head.starts_with("VPEVOLUM");
     case FileKind::kPlot: return contains(head, "<svg");
+    case FileKind::kMap: return is_map_tiff(file);
+    case FileKind::kFeatures:
+      return (contains(head, "\"FeatureCollection\"") && contains(head, "\"vpe ")) || is_own_geopackage(file);
     case FileKind::kPlanetPage:
       return head.starts_with("<!DOCTYPE html>") && contains(head, "\"generator\" content=\"vpe info\"");
   }

@@ -28,6 +28,8 @@ enum class FileKind : std::uint8_t {
   kVolume,      // semi-transparent model
   kPlanetPage,  // of vpe info
   kPlot,        // SVG, of any program
+  kMap,         // GeoTIFF of this program
+  kFeatures,    // GeoJSON or GeoPackage of this program
 };
 
 // Returns a name for messages, such as "a certificate of vpe".

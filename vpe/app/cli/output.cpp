@@ -50,6 +50,10 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 void check_name(const Output& output) {
   switch (output.kind) {
     case FileKind::kImage: return check_image_output(output.path);
+    case FileKind::kMap:
+      if (extension(output.path) != ".tif" && extension(output.path) != ".tiff")
+        fail(output.path, "maps are GeoTIFF files; let the name end in .tif");
+      return check_output(output.path);
     case FileKind::kRange: return check_range_output(output.path);
     case FileKind::kStatistics: return check_stats_output(output.path);
     case FileKind::kPlanet:

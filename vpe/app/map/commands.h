@@ -1,0 +1,15 @@
+// The command that writes maps.
+#pragma once
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace vpe::app {
+
+struct Common;
+
+// Adds its command to the program (AddCommand of vpe/app/cli/program.h).
+void add_map(CLI::App& program, Common& common);
+
+}  // namespace vpe::app
