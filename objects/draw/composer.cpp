@@ -41,6 +41,12 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
           : VolumeLights();
   SquarePainter::Image image{rays, before_sun, view_rays, light, only, 1, 1 / rule.focal_px, nullptr, nullptr};
   if (!seen_posters.is_empty()) image.posters = &seen_posters;
+  std::vector<DomePainter> domes;
+  for (std::uint32_t n = 0; n < seen_posters.size() && !frame.colour.empty(); ++n) {
+    if (DomePainter::knows(seen_posters, n))
+      domes.emplace_back(seen_posters, n, light.request.view, view_rays, light.request.settings.gamma);
+  }
+  image.domes = domes;
   if (shows_volumes) image.volume_lights = &volume_lights;
   const vpe::core::SettingsValues& settings = light.request.settings;
   if (only.empty() && (settings.samples > 1 || settings.smooth_edges)) image.samples = 8;
@@ -74,6 +80,7 @@ ComposedObjects compose(const Scene& scene, const ImageLight& light, const Level
     const SquarePainter::Drawn& drawn = square->drawn();
     instances.insert(instances.end(), drawn.instances.begin(), drawn.instances.end());
     out.pixels += drawn.counts.pixels;
+    out.covered += drawn.counts.covered;
     out.shaded += drawn.counts.shaded;
     out.geometric_error_m = std::max(out.geometric_error_m, drawn.counts.geometric_error_m);
     out.screen_space_error_px = std::max(out.screen_space_error_px, drawn.counts.screen_space_error_px);

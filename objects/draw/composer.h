@@ -24,6 +24,7 @@ namespace objects {
 // States what compose() drew.
 struct ComposedObjects {
   std::int64_t pixels = 0;   // that show an object
+  std::int64_t covered = 0;  // those whose middle is more than half opaque
   std::int64_t shaded = 0;   // pixels of ground in the shadow of one
   std::int64_t objects = 0;  // different ones
   // Hold the largest distance between a drawn level and its model, and the same in the image, at its middle. Objects count
@@ -39,7 +40,7 @@ struct ComposedObjects {
 LevelRule level_rule(const vpe::core::DrawRequest& request, bool exact);
 
 // Draws the objects into the frame of the request's view, whose range_m must hold the ranges of the ground (kSkyRange:
-// none). Colours, where the frame has any, must be without gamma. Pixels where `only` is 0 stay; empty: all are drawn.
+// none), or be empty where there is no ground and no ranges are wanted. Colours, where the frame has any, must be without gamma. Pixels where `only` is 0 stay; empty: all are drawn.
 // `posters` are images in the world, hidden and hiding as objects are. The result does not depend on threads. Pure but for what `light.ground` reads.
 ComposedObjects compose(const Scene& scene, const ImageLight& light, const LevelRule& rule,
                         vpe::base::ThreadPool& pool, vpe::core::Frame& frame,

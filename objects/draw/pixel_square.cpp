@@ -63,21 +63,28 @@ double pixel_solid_angle(const vpe::core::View& view, const glm::dvec3& directio
 
 GroundRanges::GroundRanges(const vpe::core::Frame& frame, const PixelSquare& s)
     : square_(s), side_(s.x1 - s.x0 + 2) {
-  range_m_.reserve(static_cast<std::size_t>(side_) * static_cast<std::size_t>(s.y1 - s.y0 + 2));
+  const int rows = s.y1 - s.y0 + 2;
+  has_sky_ = frame.range_m.empty();
+  range_m_.resize(stride() * static_cast<std::size_t>(rows + kPad_px) + kPad_px,
+                  has_sky_ ? vpe::core::kSkyRange : 0);
+  if (has_sky_) return;
+  const auto width = static_cast<std::size_t>(frame.width);
   for (int y = s.y0 - 1; y <= s.y1; ++y) {
-    const int row = std::clamp(y, 0, frame.height - 1);
-    for (int x = s.x0 - 1; x <= s.x1; ++x) {
-      const int column = std::clamp(x, 0, frame.width - 1);
-      const float r = frame.range_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
-                                    static_cast<std::size_t>(column)];
-      range_m_.push_back(r);
-      if (x < s.x0 || x >= s.x1 || y < s.y0 || y >= s.y1) continue;
-      if (std::isinf(r)) {
-        has_sky_ = true;
-        continue;
-      }
-      nearest_m_ = std::min(nearest_m_, static_cast<double>(r));
-      farthest_ground_m_ = std::max(farthest_ground_m_, static_cast<double>(r));
+    const float* const from =
+        frame.range_m.data() + static_cast<std::size_t>(std::clamp(y, 0, frame.height - 1)) * width;
+    float* const to = range_m_.data() + static_cast<std::size_t>(y - s.y0 + 1) * stride();
+    to[0] = from[std::max(0, s.x0 - 1)];
+    std::copy(from + s.x0, from + s.x1, to + 1);
+    to[s.x1 - s.x0 + 1] = from[std::min(s.x1, frame.width - 1)];
+    if (y < s.y0 || y >= s.y1) continue;
+    int sky = 0;
+    for (int x = s.x0; x < s.x1; ++x) sky += std::isinf(from[x]) ? 1 : 0;
+    has_sky_ = has_sky_ || sky > 0;
+    if (sky == s.x1 - s.x0) continue;
+    for (int x = s.x0; x < s.x1; ++x) {
+      if (std::isinf(from[x])) continue;
+      nearest_m_ = std::min(nearest_m_, static_cast<double>(from[x]));
+      farthest_ground_m_ = std::max(farthest_ground_m_, static_cast<double>(from[x]));
     }
   }
 }

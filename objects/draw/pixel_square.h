@@ -63,6 +63,14 @@ class GroundRanges {
     return range_m_[static_cast<std::size_t>(y - square_.y0 + 1) * static_cast<std::size_t>(side_) +
                     static_cast<std::size_t>(x - square_.x0 + 1)];
   }
+  // Returns the ranges of a row from a pixel of the square on. Also what a block of kPad_px pixels reaches beyond the square
+  // may be read. Rows are stride() apart.
+  const float* from(int x, int y) const {
+    return range_m_.data() + static_cast<std::size_t>(y - square_.y0 + 1) * stride() +
+           static_cast<std::size_t>(x - square_.x0 + 1);
+  }
+  std::size_t stride() const { return static_cast<std::size_t>(side_); }
+  static constexpr int kPad_px = 16;
   // Returns the range of the ground beside a pixel's centre, `offset` in pixels: on the plane through the pixel and its
   // neighbours where they show one surface, else that of the pixel.
   double beside(int x, int y, const glm::dvec2& offset) const;

@@ -12,8 +12,6 @@ namespace objects {
 
 namespace {
 
-// An image that is seen from its side covers many of its pixels by one; beyond this it is left to be coarse.
-constexpr double kLeastCosine = 0.02;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Returns the axes of a billboard that faces a camera at -to_m from its place.
@@ -99,7 +97,7 @@ std::optional<PosterHit> SeenPosters::meet_rectangle(const Seen& seen, const glm
   const double v = 0.5 - glm::dot(from_middle_m, seen.axes.up) / placed.tall_m;
   if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return std::nullopt;
   const double pixel_m2 =
-      pixel_solid_angle(view_, direction) * range_m * range_m / std::max(kLeastCosine, std::abs(cosine));
+      pixel_solid_angle(view_, direction) * range_m * range_m / std::max(kLeastPosterCosine, std::abs(cosine));
   const double texel_m2 = placed.width_m * placed.tall_m / placed.image.width_px / placed.image.height_px;
   return PosterHit{range_m, 0, {u, v}, static_cast<float>(std::sqrt(pixel_m2 / texel_m2))};
 }
@@ -129,7 +127,7 @@ std::optional<PosterHit> SeenPosters::meet_dome(const Seen& seen, const glm::dve
       {glm::dot(out, seen.axes.right), glm::dot(out, seen.axes.forward), glm::dot(out, seen.axes.up)});
   if (!place) return std::nullopt;
   const double pixel_sr = pixel_solid_angle(view_, direction) * range_m * range_m /
-                          (distance_m * distance_m * std::max(kLeastCosine, glm::dot(direction, out)));
+                          (distance_m * distance_m * std::max(kLeastPosterCosine, glm::dot(direction, out)));
   return PosterHit{is_nearer ? range_m : until_m, 0, place->uv,
                    static_cast<float>(std::sqrt(pixel_sr / place->texel_sr))};
 }

@@ -21,6 +21,9 @@
 
 namespace objects {
 
+// An image that is seen from its side covers many of its pixels by one; beyond this it is left to be coarse.
+inline constexpr double kLeastPosterCosine = 0.02;
+
 // Describes a place where a ray meets an image.
 struct PosterHit {
   double range_m = 0;  // along the unit ray
@@ -43,6 +46,12 @@ class SeenPosters {
   bool is_opaque(std::uint32_t poster) const { return seen_[poster].opacity >= 1; }
   // Returns whether the image hides ground that is nearer than itself. It is met on that ground then.
   bool replaces_ground(std::uint32_t poster) const { return seen_[poster].replaces_ground; }
+  // Returns the dome as it is placed, or null for other images.
+  const PlacedPoster* dome(std::uint32_t poster) const {
+    return seen_[poster].is_dome ? seen_[poster].placed : nullptr;
+  }
+  // Returns the share of an image in what is seen, 0 to 1, with fading.
+  double opacity(std::uint32_t poster) const { return seen_[poster].opacity; }
   // Returns a distance from the camera within which there is no image.
   double clear_m() const { return clear_m_; }
 

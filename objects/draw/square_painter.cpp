@@ -35,13 +35,13 @@ SquarePainter::SquarePainter(const Image& image, const vpe::core::Frame& frame, 
       drawn_part_(vpe::core::drawn_part(view_)),
       square_(square),
       frame_width_(frame.width),
-      ground_(frame, square) {
-  const ViewCone cone = cone_of(view_, image.view_rays, square, 1.5);
-  near_to_far_ = image_.rays.in_cone(cone, ground_.farthest_m());
+      ground_(frame, square),
+      cone_(cone_of(view_, image.view_rays, square, 1.5)) {
+  near_to_far_ = image_.rays.in_cone(cone_, ground_.farthest_m());
   if (image_.posters != nullptr)
-    posters_ = image_.posters->in_cone(cone.axis, cone.cosine, ground_.farthest_m());
+    posters_ = image_.posters->in_cone(cone_.axis, cone_.cosine, ground_.farthest_m());
   if (!frame.colour.empty() && ground_.has_ground())
-    may_be_shaded_ = find_shadows(cone, ground_.nearest_m(), ground_.farthest_ground_m());
+    may_be_shaded_ = find_shadows(cone_, ground_.nearest_m(), ground_.farthest_ground_m());
 }
 
 bool SquarePainter::find_shadows(const ViewCone& cone, double near_m, double far_m) const {
@@ -203,6 +203,13 @@ const SeenPixel* SquarePainter::beside(int x, int y, const Seen& seen) const {
 }
 
 void SquarePainter::see() {
+  if (const DomePainter* dome = lone_dome()) {
+    dome_mask_ = dome->find(square_, cone_, ground_);
+    dome_seen_.front = 1 + (dome->poster() | kPosterBit);
+    dome_ = dome;
+    shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light, image_.posters);
+    return;
+  }
   seen_.resize(static_cast<std::size_t>(square_.x1 - square_.x0) *
                static_cast<std::size_t>(square_.y1 - square_.y0));
   shader_.emplace(image_.rays, image_.before_sun, near_to_far_, image_.light, image_.posters);
@@ -295,7 +302,8 @@ void SquarePainter::paint_pixel(const SubSquare& part, int x, int y, const Seen&
     frame.colour[pixel] = to_rgb(colour * (1 - object.over.w) + glm::dvec3(object.over));
   }
   if (object.over.w > 0) ++drawn_.counts.pixels;
-  if (here.object.range_m < static_cast<double>(frame.range_m[pixel]))
+  if (!std::isinf(here.object.range_m)) ++drawn_.counts.covered;
+  if (!frame.range_m.empty() && here.object.range_m < static_cast<double>(frame.range_m[pixel]))
     frame.range_m[pixel] = static_cast<float>(here.object.range_m);
 }
 
@@ -314,6 +322,10 @@ void SquarePainter::add_small(const PlacedObject& object, int x, int y, double s
 }
 
 void SquarePainter::paint(const Seen& seen, vpe::core::Frame& frame) {
+  if (dome_ != nullptr) {
+    paint_dome(seen, frame);
+    return;
+  }
   for (const SubSquare& part : parts_) {
     for (int y = part.square.y0; y < part.square.y1; ++y) {
       for (int x = part.square.x0; x < part.square.x1; ++x) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "objects/draw/composer.h"
+#include "objects/draw/dome_painter.h"
 #include "objects/draw/pixel_square.h"
 #include "objects/draw/volume_shader.h"
 
@@ -58,6 +59,7 @@ class SquarePainter {
     double pixel_rad = 0;                         // angle of a pixel at the image's middle
     const VolumeLights* volume_lights = nullptr;  // null: the scene has no volumes
     const SeenPosters* posters = nullptr;         // null: the camera sees none
+    std::span<const DomePainter> domes = {};
   };
 
   // `frame` is read only.
@@ -67,6 +69,7 @@ class SquarePainter {
   bool may_show() const { return !near_to_far_.empty() || may_be_shaded_ || !posters_.empty(); }
   void see();
   const SeenPixel& at(int x, int y) const {
+    if (dome_ != nullptr) return shows_dome(x, y) ? dome_seen_ : nothing_seen_;
     return seen_[static_cast<std::size_t>(y - square_.y0) * static_cast<std::size_t>(square_.x1 - square_.x0) +
                  static_cast<std::size_t>(x - square_.x0)];
   }
@@ -97,6 +100,14 @@ class SquarePainter {
     ObjectNumbers posters;  // of Image::posters
   };
   SeenPixel& seen_at(int x, int y) { return const_cast<SeenPixel&>(at(x, y)); }
+  // Returns what draws the square if it shows nothing but ground and one dome, else null.
+  const DomePainter* lone_dome() const;
+  bool shows_dome(int x, int y) const {
+    return (dome_mask_.rows[static_cast<std::size_t>(y - square_.y0)] >> static_cast<unsigned>(x - square_.x0) &
+            1U) != 0;
+  }
+  void paint_dome(const Seen& seen, vpe::core::Frame& frame);
+  void paint_dome_block(const DomeColours& colours, const Seen& seen, vpe::core::Frame& frame);
   bool is_wanted(int x, int y) const;
   bool find_shadows(const ViewCone& cone, double near_m, double far_m) const;
   SubSquare part_of(const PixelSquare& square, const ObjectNumbers& among) const;
@@ -135,6 +146,7 @@ class SquarePainter {
   PixelSquare square_;
   int frame_width_;
   GroundRanges ground_;
+  ViewCone cone_;  // of the square and what lies beside it
   std::vector<PlacedObject> near_to_far_;
   bool may_be_shaded_ = false;
   ObjectNumbers thin_;  // objects that pass between all rays of the image, ascending
@@ -142,7 +154,11 @@ class SquarePainter {
   std::optional<VolumeShader> volume_shader_;  // where volumes may show
   ObjectNumbers volumes_;                      // of near_to_far_
   ObjectNumbers posters_;                      // of Image::posters
-  std::vector<SeenPixel> seen_;
+  std::vector<SeenPixel> seen_;                // empty where a painter of domes draws the square
+  const DomePainter* dome_ = nullptr;
+  DomeMask dome_mask_;
+  SeenPixel dome_seen_;
+  SeenPixel nothing_seen_;
   std::vector<SubSquare> parts_;
   RayResult scratch_;
   Drawn drawn_;

@@ -104,7 +104,8 @@ glm::vec4 bilinear_within(const Texture& t, const glm::vec2& uv, bool repeats_ac
 
 }  // namespace
 
-TexturePyramid::TexturePyramid(Texture texture) {
+TexturePyramid::TexturePyramid(Texture texture)
+    : is_opaque_(std::ranges::all_of(texture.texels, [](const Rgba& c) { return c.a == 255; })) {
   levels_.push_back(std::move(texture));
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
 }

@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "objects/model/mesh.h"
@@ -23,9 +24,14 @@ class TexturePyramid {
   // Returns the mean of all texels.
   glm::vec4 mean() const;
   std::size_t bytes() const;
+  // Returns the texture and its coarser copies.
+  std::span<const Texture> levels() const { return levels_; }
+  // Returns whether no texel lets anything through.
+  bool is_opaque() const { return is_opaque_; }
 
  private:
   std::vector<Texture> levels_;
+  bool is_opaque_;
 };
 
 }  // namespace objects

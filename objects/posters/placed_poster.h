@@ -14,6 +14,7 @@
 #include "mars/geodesy/pose.h"
 #include "objects/files/poster_entry.h"
 #include "objects/model/texture_pyramid.h"
+#include "objects/posters/panorama_formula.h"
 #include "objects/scene/place.h"
 
 namespace objects {
@@ -34,6 +35,8 @@ struct PosterImage {
   int height_px = 0;
   PanoramaLookup lookup = {};   // of panoramas
   bool is_full_circle = false;  // the right edge of a panorama follows its left one
+  std::optional<PanoramaFormula> formula =
+      std::nullopt;  // that of lookup(), where there is one: domes are drawn faster
 };
 
 // Describes an image at its place. Immutable; any thread may read it.

@@ -91,7 +91,7 @@ class ObjectPass {
     frame.height = size.y;
     const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
     frame.colour.assign(pixels, {});
-    frame.range_m.assign(pixels, core::kSkyRange);
+    if (request.want_rough_range) frame.range_m.assign(pixels, core::kSkyRange);
     const paging::PlanetMeta& meta = planet_->meta();
     core::state_data(result.certificate,
                      {.tolerance_px = request.settings.lod_tolerance_px,
@@ -101,15 +101,17 @@ class ObjectPass {
                      meta.sources);
     result.certificate.exaggeration = request.settings.exaggeration;
     result.certificate.corner_stretch = core::corner_stretch(request.view);
-    draw(*placed.scene, placed.posters.get(), request, false, {}, frame, result);
+    const std::int64_t covered =
+        draw(*placed.scene, placed.posters.get(), request, false, {}, frame, result).covered;
     // Between the directions that were tried the panorama may have an end.
-    if (std::ranges::any_of(frame.range_m, [](float r) { return std::isinf(r); })) return std::nullopt;
+    if (covered < static_cast<std::int64_t>(pixels)) return std::nullopt;
     return result;
   }
 
-  void draw(const objects::Scene& scene, const std::vector<objects::PlacedPoster>* posters,
-            const core::DrawRequest& request, bool is_exact, std::span<const std::uint8_t> only,
-            core::Frame& frame, core::DrawResult& result) {
+  objects::ComposedObjects draw(const objects::Scene& scene, const std::vector<objects::PlacedPoster>* posters,
+                                const core::DrawRequest& request, bool is_exact,
+                                std::span<const std::uint8_t> only, core::Frame& frame,
+                                core::DrawResult& result) {
     core::Certificate& certificate = result.certificate;
     core::DrawRequest for_planet = request;
     paging::fit_to_planet(for_planet.settings, planet_->meta());
@@ -127,6 +129,7 @@ class ObjectPass {
       certificate.image_bound_px = std::max(*certificate.image_bound_px, drawn.screen_space_error_px);
     if (certificate.middle_bound_px)
       certificate.middle_bound_px = std::max(*certificate.middle_bound_px, drawn.screen_space_error_px);
+    return drawn;
   }
 
   std::size_t bytes() const { return surface_.bytes_resident() + shader_.bytes_resident() + library_.bytes(); }
@@ -184,7 +187,6 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
     if (!request.want_range && request.want_colour) {
       if (std::optional<core::DrawResult> dome = pass().draw_dome(placed, request)) {
         core::apply_gamma(dome->frame.colour, request.settings.gamma);
-        if (!request.want_rough_range) dome->frame.range_m = {};
         dome->stats.bytes_resident += static_cast<std::int64_t>(pass().bytes());
         return std::move(*dome);
       }

@@ -8,6 +8,7 @@
 #include "panorama/image/tiled_image.h"
 #include "panorama/metadata/open_panorama.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/scene/panorama_lookup.h"
 #include "vpe/core/image/image.h"
 
 namespace vpe::app {
@@ -70,31 +71,6 @@ objects::Texture read_panorama(const panorama::PanoramaDescription& description)
   return texture;
 }
 
-// Returns the solid angle of a pixel of the map, steradians.
-double texel_sr(const panorama::PanoramaMap& map, double elevation_deg, const glm::dvec2& pixel) {
-  const double cosine = std::max(1e-6, std::cos(elevation_deg * mars::kRadiansPerDegree));
-  const double column = 2 * mars::kPi / map.turn_px;
-  switch (map.kind) {
-    case panorama::MapKind::kEquirectangular: return column * cosine / map.focal_px;
-    case panorama::MapKind::kCylinder: return column * cosine * cosine * cosine / map.focal_px;
-    case panorama::MapKind::kFacets: break;
-  }
-  const double u = std::fmod(pixel.x + map.crop_left_px, map.facet_px()) - 0.5 * map.facet_px();
-  const double along = map.focal_px / std::hypot(map.focal_px, u, map.horizon_px - pixel.y);
-  return along * along * along / (map.focal_px * map.focal_px);
-}
-
-objects::PanoramaLookup lookup_of(const panorama::PanoramaMap& map, const glm::dvec2& reduced) {
-  return [map, reduced](const glm::dvec3& d) -> std::optional<objects::PanoramaPlace> {
-    const double elevation_deg = std::atan2(d.z, std::hypot(d.x, d.y)) / mars::kRadiansPerDegree;
-    const auto pixel = map.to_pixel({std::atan2(d.x, d.y) / mars::kRadiansPerDegree, elevation_deg});
-    if (!pixel) return std::nullopt;
-    return objects::PanoramaPlace{
-        *pixel / glm::dvec2(static_cast<double>(map.width_px), static_cast<double>(map.height_px)),
-        texel_sr(map, elevation_deg, *pixel) * reduced.x * reduced.y};
-  };
-}
-
 }  // namespace
 
 std::vector<std::filesystem::path> files_of_poster(const objects::PosterEntry& entry) {
@@ -126,8 +102,9 @@ const PosterImages::Known& PosterImages::known(const objects::PosterEntry& entry
   const glm::dvec2 reduced(static_cast<double>(map.width_px) / texture.width,
                            static_cast<double>(map.height_px) / texture.height);
   next.image = image_of(std::move(texture));
-  next.image.lookup = lookup_of(map, reduced);
+  next.image.lookup = panorama_lookup(map, reduced);
   next.image.is_full_circle = map.is_full_turn();
+  next.image.formula = panorama_formula(map);
   if (const auto& viewpoint = description.viewpoint) {
     next.place = mars::LonLat{viewpoint->lon_deg, viewpoint->lat_deg};
     next.height_kind = viewpoint->alt_m ? objects::HeightKind::kAltitude : objects::HeightKind::kAboveGround;
