@@ -19,11 +19,12 @@ namespace {
 using PageJson = nlohmann::ordered_json;
 using vpe::base::format_display;
 
-const std::array<ViewerFile, 15>& files_of_viewer() {
-  static const std::array<ViewerFile, 15> kFiles{{{"style.css", page_text::kStyle},
+const std::array<ViewerFile, 16>& files_of_viewer() {
+  static const std::array<ViewerFile, 16> kFiles{{{"style.css", page_text::kStyle},
                                                   {"projection.js", page_text::kProjection},
                                                   {"view.js", page_text::kView},
                                                   {"pyramid.js", page_text::kPyramid},
+                                                  {"pace.js", page_text::kPace},
                                                   {"flat_view.js", page_text::kFlatView},
                                                   {"planes.js", page_text::kPlanes},
                                                   {"text.js", page_text::kText},

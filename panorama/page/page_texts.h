@@ -11,6 +11,7 @@ extern const std::string_view kInput;
 extern const std::string_view kLoader;
 extern const std::string_view kMain;
 extern const std::string_view kMarks;
+extern const std::string_view kPace;
 extern const std::string_view kPage;
 extern const std::string_view kPanel;
 extern const std::string_view kPlanes;

@@ -194,6 +194,24 @@ test('red-cyan glasses and side by side', async () => {
   expectClean();
 });
 
+test('slow frames are drawn with fewer pixels, and the view at rest with all', async () => {
+  await open(sample, '#view=200,1,40');
+  const sharp = await browser.screenshot();
+  const widths = await browser.evaluate(`(async () => { const p = vpe.current, widths = [];
+    for (let n = 0; n < 12; ++n) { p.view.lookAt(195 + n, 1); p.changed();
+      for (const end = performance.now() + 40; performance.now() < end;);
+      await new Promise(requestAnimationFrame); widths.push(p.canvas.width); }
+    p.view.lookAt(200, 1); p.changed(); return widths; })()`);
+  assert.deepStrictEqual([...new Set(widths)], [1280, 640]);
+  await browser.until(kSettled);
+  assert.strictEqual(await browser.evaluate('vpe.current.canvas.width'), 1280);
+  const [before, now] = [sharp, await browser.screenshot()].map(decodePng);
+  for (let y = 30; y < 600; y += 7) {
+    for (let x = 0; x < 1280; x += 7) assert.deepStrictEqual(now.at(x, y), before.at(x, y), `${x}, ${y}`);
+  }
+  expectClean();
+});
+
 test('a gigapixel opens within a second', async () => {
   const giant = writePage(describe(60000, 17196, {...bare, layers: null, eyes: ['left'], picture: ''}), () => grey);
   let first = Infinity;

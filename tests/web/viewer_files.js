@@ -7,7 +7,7 @@ const vm = require('node:vm');
 
 const kFolder = path.join(__dirname, '../../panorama/page/web');
 // In the order of the page (panorama/page/page_files.cpp).
-const kPure = ['projection.js', 'view.js', 'pyramid.js', 'flat_view.js', 'planes.js', 'text.js'];
+const kPure = ['projection.js', 'view.js', 'pyramid.js', 'pace.js', 'flat_view.js', 'planes.js', 'text.js'];
 const kWithDom = ['loader.js', 'webgl.js', 'flat_renderer.js', 'marks.js', 'input.js', 'panel.js', 'page.js', 'main.js'];
 
 function run(names, context) {

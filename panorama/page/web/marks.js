@@ -53,7 +53,7 @@
       scale.hidden = isBare;
       if (isBare) return;
       const bar = scaleBar(view, range, Math.min(160, view.width / 3));
-      this.boxes.scaleText.textContent = bar.text;
+      if (this.boxes.scaleText.textContent !== bar.text) this.boxes.scaleText.textContent = bar.text;
       scale.style.width = `${bar.px.toFixed(1)}px`;
     }
 

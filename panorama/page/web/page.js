@@ -20,6 +20,9 @@
       this.stereo = 'off';
       this.pointer = null;
       this.frame = 0;
+      this.isStale = false;
+      this.drawnView = '';
+      this.pace = new vpe.pace.Pace();
       this.restTimer = 0;
       this.layerTimer = 0;
       this.moving = null;
@@ -86,12 +89,8 @@
     }
 
     resize() {
-      const {width, height, density, all} = this.screen();
+      const {width, height, density} = this.screen();
       this.view.resize(width, height, density);
-      const size = [Math.round(all * density), Math.round(height * density)];
-      if (this.hasWebGl && (this.canvas.width !== size[0] || this.canvas.height !== size[1])) {
-        [this.canvas.width, this.canvas.height] = size;
-      }
       this.changed();
     }
 
@@ -105,23 +104,49 @@
     // Draws before the next refresh. `isByKey`: the middle is what counts.
     changed(isByKey) {
       if (isByKey) byId('cross').hidden = false;
-      if (this.frame === 0) this.frame = requestAnimationFrame((time) => this.draw(time));
+      this.isStale = true;
+      this.wake();
+    }
+
+    wake() {
+      this.nextFrame();
       clearTimeout(this.restTimer);
       this.restTimer = setTimeout(() => this.rest(), kRest_ms);
+    }
+
+    nextFrame() {
+      if (this.frame === 0) this.frame = requestAnimationFrame((time) => this.tick(time));
     }
 
     // Reads out at a place of the view; null: at the middle.
     point(place) {
       this.pointer = place;
       byId('cross').hidden = place !== null;
-      this.changed();
+      this.wake();
     }
 
-    draw(time) {
+    // Does what a frame needs. Frames follow one another until the picture is there at full size.
+    tick(time) {
       this.frame = 0;
       if (this.moving !== null) this.step(time);
+      const {view, pace} = this;
+      const shown = `${view.yaw} ${view.pitch} ${view.fov}`;
+      const isMoved = this.hasWebGl && shown !== this.drawnView;
+      const {divisor} = pace;
+      pace.begin(time, isMoved);
+      if (this.isStale || pace.divisor !== divisor) this.draw();
+      this.drawnView = shown;
+      if (isMoved) pace.drawn(time);
+      if (isMoved || pace.divisor > 1) this.nextFrame();
+      this.out.showSoon(time, () => this.readOutAt(this.pointer, false).parts);
+      clearTimeout(this.layerTimer);
+      if (this.layers !== null) this.layerTimer = setTimeout(() => this.fetchLayers(), kLayers_ms);
+    }
+
+    draw() {
+      this.isStale = false;
       if (this.hasWebGl) {
-        this.drawTiles();
+        this.drawTiles(this.pace.divisor);
       } else {
         this.renderer.draw(this.view);
         this.loader.want(this.renderer.missing(this.view).map((name) => `left/${name}`));
@@ -130,21 +155,23 @@
       this.marks.draw(this.view, {
         density: this.view.density, isBare: this.stereo === 'side', range: middle && middle.range_m,
       });
-      this.out.show(this.readOutAt(this.pointer, false).parts);
-      clearTimeout(this.layerTimer);
-      if (this.layers !== null) this.layerTimer = setTimeout(() => this.fetchLayers(), kLayers_ms);
     }
 
-    drawTiles() {
+    // Draws into a canvas of the view's device pixels divided by `divisor` a side.
+    drawTiles(divisor) {
+      const screen = this.screen();
+      this.renderer.resize((screen.all * screen.density) / divisor, (screen.height * screen.density) / divisor);
       const eyes = this.stereo === 'off' ? ['left'] : ['left', 'right'];
       const whole = {x: 0, y: 0, width: this.canvas.width, height: this.canvas.height};
       const half = Math.floor(this.canvas.width / 2);
       const wanted = [];
       let needed = 0;
       const jobs = eyes.map((eye, n) => {
-        const chosen = this.finder.select(this.view, (name) => this.renderer.has(`${eye}/${name}`));
+        const chosen = this.finder.selectFor(this.view, (name) => this.renderer.has(`${eye}/${name}`), divisor);
         needed += chosen.wanted.length + 8;
         wanted.push(...chosen.want.map((tile) => `${eye}/${tile.name}`));
+        // Under all others, whenever one of them is missing.
+        this.renderer.use(`${eye}/${this.data.pyramid.levels - 1}/0_0`);
         const part = this.stereo === 'side' ? {...whole, x: n * half, width: half} : whole;
         const colours = this.stereo === 'anaglyph' ? ['red', 'cyan'][n] : 'all';
         return {eye, tiles: chosen.draw, part, colours};

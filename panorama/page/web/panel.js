@@ -4,11 +4,31 @@
 
   const {element, directionOf, textOf} = vpe.marks;
 
+  const kReadOut_ms = 100;
+
   // Shows what is under the pointer, and says what is in the middle of a view that rests.
   class ReadOut {
     constructor(boxes) {
       this.boxes = boxes;
       this.text = '';
+      this.timer = 0;
+      this.next = -Infinity;
+    }
+
+    // Shows what parts() returns, at once or some milliseconds later: at most ten times a second. `time` is that of
+    // a frame.
+    showSoon(time, parts) {
+      if (this.timer !== 0) return;
+      const wait = this.next - time;
+      this.next = Math.max(time, this.next) + kReadOut_ms;
+      if (wait <= 0) {
+        this.show(parts());
+        return;
+      }
+      this.timer = setTimeout(() => {
+        this.timer = 0;
+        this.show(parts());
+      }, wait);
     }
 
     // Shows [label, text] pairs.

@@ -54,11 +54,11 @@
   }
 
   // Returns the level whose pixels are nearest to device pixels in the middle of a view, so that one of them is
-  // at most kWidest pixels of the level wide.
-  function wantedLevel(pyramid, map, view) {
+  // at most kWidest pixels of the level wide. `density` is the number of device pixels to a CSS pixel.
+  function wantedLevel(pyramid, map, view, density = view.density) {
     const onHorizon = Math.max(columnsPerRadian(map), map.focal_px);
     const ratio = map.kind === 'equirectangular' ? onHorizon : onHorizon / Math.max(Math.cos(view.pitch * kDeg), 0.25);
-    const level = Math.floor(Math.log2(ratio / (view.focal() * view.density)) + Math.log2(2 / kWidest));
+    const level = Math.floor(Math.log2(ratio / (view.focal() * density)) + Math.log2(2 / kWidest));
     return Math.min(Math.max(level, 0), pyramid.levels - 1);
   }
 
@@ -92,6 +92,21 @@
     const steepest = Math.max(Math.abs(map.horizon_px - tile.y0), Math.abs(map.horizon_px - tile.y1)) / map.focal_px;
     const cell = Math.min(128, Math.sqrt((8 * focal * kCellPx) / Math.max(steepest, 0.02)));
     return {xs: lines(tile.x0, tile.x1, count(tile.x1 - tile.x0, cell)), ys: [tile.y0, tile.y1]};
+  }
+
+  // Returns a tile whose part of the image is half a pixel of its level wider on all sides where the image goes on.
+  // Neighbours then overlap, so that rounding leaves no hole between them; the borders of their pictures make both
+  // show the same there.
+  function overlapping(pyramid, map, tile) {
+    const half = 0.5 * kBorderPx * 2 ** tile.level;
+    const goesOn = isClosed(map);
+    return {
+      ...tile,
+      x0: tile.x0 - (goesOn || tile.x0 > 0 ? half : 0),
+      x1: tile.x1 + (goesOn || tile.x1 < shownWidth(map) ? half : 0),
+      y0: tile.y0 - (tile.y0 > 0 ? half : 0),
+      y1: tile.y1 + (tile.y1 < pyramid.height_px ? half : 0),
+    };
   }
 
   const normalised = (v) => {
@@ -182,16 +197,16 @@
       return tiles.sort((a, b) => off(a) - off(b));
     }
 
-    // Returns {draw, want}: tiles to draw, coarse ones first, of those that has(name) says are there, and tiles to
+    // Returns {draw, want, wanted}: tiles to draw, coarse ones first, of those that has(name) says are there, and tiles to
     // fetch, most urgent first: the coarsest one, then some two levels coarser than those of the view that are
-    // missing, then these. A tile that is missing is replaced by the finest coarser one; the coarsest one lies below
-    // all others. A level of more than `most` tiles gives way to the next coarser one.
-    select(view, has, most = 160) {
+    // missing, then these; `wanted` are all of the view. A tile that is missing is replaced by the finest coarser one. A level of more than `most`
+    // tiles gives way to the next coarser one.
+    select(view, has, {most = 160, density = view.density} = {}) {
       const last = this.pyramid.levels - 1;
-      let level = wantedLevel(this.pyramid, this.map, view);
+      let level = wantedLevel(this.pyramid, this.map, view, density);
       let wanted = this.visible(view, level);
       while (wanted.length > most && level < last) wanted = this.visible(view, ++level);
-      const draw = new Map([[this.tile(last, 0, 0).name, this.tile(last, 0, 0)]]);
+      const draw = new Map();
       const middle = Math.min(level + 2, last);
       const coarse = new Map();
       for (const tile of wanted) {
@@ -210,6 +225,16 @@
       const here = [...draw.values()].filter((tile) => has(tile.name)).sort((a, b) => b.level - a.level);
       const inOrder = new Set([this.tile(last, 0, 0), ...coarse.values(), ...wanted]);
       return {level, draw: here, want: [...inOrder].filter((tile) => !has(tile.name)), wanted};
+    }
+
+    // Returns select() for a drawing of which the screen has `divisor` times as many pixels a side. It takes tiles
+    // that suit its pixels where all of them are there, else those of the screen. Both are fetched.
+    selectFor(view, has, divisor) {
+      const full = this.select(view, has);
+      if (divisor === 1) return full;
+      const reduced = this.select(view, has, {density: view.density / divisor});
+      const isWhole = reduced.wanted.every(({name}) => has(name));
+      return {...full, draw: (isWhole ? reduced : full).draw, want: [...new Set([...reduced.want, ...full.want])]};
     }
   }
 
@@ -257,7 +282,7 @@
   }
 
   vpe.pyramid = {
-    kBorderPx, tileName, levelSize, tileAt, placeInTile, wantedLevel, cellsOf, coneOf, TileFinder, RecentlyUsed,
-    isClosed,
+    kBorderPx, tileName, levelSize, tileAt, placeInTile, wantedLevel, cellsOf, overlapping, coneOf, TileFinder,
+    RecentlyUsed, isClosed,
   };
 })((globalThis.vpe = globalThis.vpe || {}));

@@ -4,7 +4,7 @@
   'use strict';
 
   const {surfacePoint, facetPx} = vpe.projection;
-  const {cellsOf, placeInTile} = vpe.pyramid;
+  const {cellsOf, overlapping, placeInTile} = vpe.pyramid;
 
   const kVertexShader = `
     attribute vec3 offset;
@@ -36,7 +36,7 @@
   // Returns {middle, vertices, indices} of a tile: 5 numbers a vertex, offset from the middle and place in the
   // picture. Cells of facets have vertices of their own on either side of a seam.
   function meshOf(pyramid, map, tile) {
-    const {xs, ys} = cellsOf(map, tile);
+    const {xs, ys} = cellsOf(map, overlapping(pyramid, map, tile));
     const middle = surfacePoint(map, 0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1));
     const vertices = [];
     const indices = [];
@@ -131,6 +131,19 @@
 
     has(name) {
       return this.tiles.has(name);
+    }
+
+    // Gives the canvas a size in pixels, rounded.
+    resize(width, height) {
+      const size = [width, height].map((length) => Math.max(Math.round(length), 1));
+      if (this.canvas.width !== size[0] || this.canvas.height !== size[1]) {
+        [this.canvas.width, this.canvas.height] = size;
+      }
+    }
+
+    // Counts a tile as used without drawing it.
+    use(name) {
+      this.tiles.get(name);
     }
 
     // Takes the picture of a tile. `name` is that of an eye's tile.
