@@ -9,6 +9,10 @@
 
 namespace panorama {
 
+bool has_ranges(const PanoramaDescription& description) {
+  return std::ranges::any_of(description.planes, [](const PlaneName& name) { return name.name == "range"; });
+}
+
 std::optional<PlaneReader> open_ranges(const PanoramaDescription& description, std::size_t budget_bytes) {
   for (const PlaneName& name : description.planes) {
     if (name.name == "range")

@@ -10,6 +10,9 @@
 
 namespace panorama {
 
+// Returns whether a panorama has the layer "range".
+bool has_ranges(const PanoramaDescription& description);
+
 // Opens the layer "range" of a panorama; nullopt if it has none. Throws vpe::base::FileError.
 std::optional<PlaneReader> open_ranges(const PanoramaDescription& description, std::size_t budget_bytes);
 

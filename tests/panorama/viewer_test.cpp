@@ -1,5 +1,6 @@
 // The viewer: directions and screen positions, limits, turning and zooming.
 #include "panorama/viewer/viewer.h"
+#include "panorama/viewer/head_offset.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -162,6 +163,17 @@ TEST(Viewer, DraggingAcrossNorthGoesOn) {
   viewer.hold(grabbed, 0.0, 350.0);
   EXPECT_GT(viewer.yaw_deg(), 360.0);  // not back to 5
   EXPECT_LT(viewer.yaw_deg(), 375.0);
+}
+
+TEST(HeadOffset, IsSeenFromABodyThatFacesTheAzimuth) {
+  const auto near = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-12; };
+  // To the north right is east, behind is south; to the east right is south, behind is west. Up is up.
+  EXPECT_TRUE(near(panorama::head_offset(0, {1, 2, 3}), {1, -3, 2}));
+  EXPECT_TRUE(near(panorama::head_offset(90, {1, 2, 3}), {-3, -1, 2}));
+  EXPECT_TRUE(near(panorama::head_offset(450, {1, 2, 3}), {-3, -1, 2}));
+  // Those of the level axes of a view there.
+  const mars::Axes axes = panorama::view_of(123, 0, 60, 100, 100).camera.axes;
+  EXPECT_TRUE(near(panorama::head_offset(123, {1, 2, 3}), axes.right + 2.0 * axes.up - 3.0 * axes.forward));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mars/geodesy/sphere.h"
+#include "panorama/viewer/head_offset.h"
 #include "vpe/core/image/image.h"
 #include "vpe/explore/steer.h"
 
@@ -25,7 +26,8 @@ double tangent_of_half(double fov_deg) { return std::tan(0.5 * fov_deg * mars::k
 
 bool same_view(const core::View& a, const core::View& b) {
   return a.width == b.width && a.height == b.height && a.fov_deg == b.fov_deg &&
-         a.camera.axes.forward == b.camera.axes.forward && a.camera.axes.up == b.camera.axes.up;
+         a.camera.axes.forward == b.camera.axes.forward && a.camera.axes.up == b.camera.axes.up &&
+         a.camera.position_m == b.camera.position_m;
 }
 
 }  // namespace
@@ -148,7 +150,17 @@ bool OverlookView::act(const explore::Action& action) {
   return true;
 }
 
-void OverlookView::advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s) {
+// Returns the view with the head beside the panorama's place.
+core::View OverlookView::wanted_view() const {
+  core::View view = viewer_.view();
+  // The body faces where the platform does, not where the head looks.
+  view.camera.position_m = panorama::head_offset(platform_deg_.x, head_m_);
+  return view;
+}
+
+void OverlookView::advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s,
+                           const glm::dvec3& head_m) {
+  head_m_ = setup_.head_scale * head_m;
   const glm::dvec2 head{look.yaw_deg, look.pitch_deg};
   if (head != head_deg_) {
     head_deg_ = head;
@@ -207,7 +219,7 @@ bool OverlookView::update(double wait_s) {
 
 void OverlookView::request_image() {
   if (!maker_->is_idle()) return;
-  const core::View wanted = viewer_.view();
+  const core::View wanted = wanted_view();
   // Images are saved at rest, so that the saved view is the one that the user sees.
   const bool shows_it = drawn_ && image_is_full_ && drawn_->error.empty() &&
                         same_view(drawn_->request.draw.view, wanted) && drawn_->request.stereo == stereo_;

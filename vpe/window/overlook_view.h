@@ -55,7 +55,9 @@ struct OverlookSetup {
   std::optional<core::StereoLayout> stereo;                  // only with a pair
   // Time of an image while the view moves. Smaller: smoother motion, coarser images; 0: always full images.
   double budget_ms = 40;
-  bool invert_wheel = false;     // rolling away zooms out
+  bool invert_wheel = false;  // rolling away zooms out
+  // Metres of the world for a metre of the head, by the panorama's ranges. 0: a head only turns.
+  double head_scale = 0;
   std::filesystem::path images;  // folder of saved views
 };
 
@@ -84,7 +86,9 @@ class OverlookView {
   // Handles north-up, level, reset, zoom-in, zoom-out, zoom-reset and screenshot. Returns false for other
   // actions.
   bool act(const explore::Action& action);
-  void advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s);
+  // Takes the head's direction and its place, metres to the right, up and backwards of where it rests.
+  void advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s,
+               const glm::dvec3& head_m = glm::dvec3(0));
   // Requests an image if one is due, and takes a finished one, for which it waits at most `wait_s` seconds.
   // Returns true if draw() would show something else.
   bool update(double wait_s);
@@ -119,6 +123,7 @@ class OverlookView {
   glm::ivec2 eye_size() const;
   glm::dvec2 camera_xy(double x, double y) const;
   void update_platform();
+  core::View wanted_view() const;
   void show_message(std::string text, bool is_error);
   void request_image();
   void take_image(double wait_s);
@@ -134,6 +139,7 @@ class OverlookView {
   Texture texture_;
   glm::dvec2 platform_deg_{0, 0};  // yaw and pitch without the head's
   glm::dvec2 head_deg_{0, 0};
+  glm::dvec3 head_m_{0, 0, 0};  // in the world's metres
   glm::dvec2 start_deg_{0, 0};
   std::optional<panorama::Direction> held_;
   std::optional<glm::dvec2> cursor_;  // over the view

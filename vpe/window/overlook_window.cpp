@@ -75,7 +75,7 @@ bool OverlookWindow::step(double wait_s) {
   last_step_s_ = step_s;
   const DeviceReading reading = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
   for (const explore::Action& action : reading.actions) act(action);
-  view_.advance(reading.controls, reading.look, dt_s);
+  view_.advance(reading.controls, reading.look, dt_s, reading.head.position_m);
   lay_out();
   if (view_.update(kImageWait_s)) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0) {

@@ -122,5 +122,52 @@ TEST_F(SecondLook, ChoosesABaseAndSaysWhatIsWrong) {
   EXPECT_FALSE(exists("c.png"));
 }
 
+TEST_F(SecondLook, AHeadBesideThePlaceSeesWhatAPanoramaFromThereShows) {
+  // Looking north: the head is to the east and higher. 3000 m of the ground's 60 km.
+  constexpr double kRadius_m = 3396190;
+  constexpr double kEast_m = 6000;
+  const double shift_deg = kEast_m / kRadius_m / std::cos(10 * 3.14159265 / 180) * 180 / 3.14159265;
+  make("left.png", 20, {"--aux-layers", "range"});
+  make("moved.png", 20 + shift_deg);
+  const auto view_of = [&](const std::string& image, const std::string& output, const Words& more) {
+    Words words{"overlook", image,     "--view", "0,-25", "--fov", "40",
+                "--size",   "240x160", "-o",     output,  "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return vpe(words);
+  };
+  const Result told = view_of("left.png", "head.png", {"--head", "6000,0,0"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  const nlohmann::json head = parse_json(told.out)["head"];
+  EXPECT_NEAR(head["moved_m"].get<double>(), kEast_m, 1e-6);
+  EXPECT_LT(head["filled_share"].get<double>(), 0.1);
+  ASSERT_EQ(view_of("moved.png", "there.png", {}).exit_code, 0);
+  ASSERT_EQ(view_of("left.png", "here.png", {}).exit_code, 0);
+  const RgbImage seen = vpe::core::read_image(dir_ / "head.png");
+  const RgbImage there = vpe::core::read_image(dir_ / "there.png");
+  const RgbImage here = vpe::core::read_image(dir_ / "here.png");
+  ASSERT_EQ(seen.pixels.size(), there.pixels.size());
+  const double moved = mean_difference(seen, there, 0);
+  const double still = mean_difference(here, there, 0);
+  std::printf("views differ by %.2f of 255 on the mean, by %.2f if nothing is moved\n", moved, still);
+  EXPECT_LT(moved, 0.4 * still);
+}
+
+TEST_F(SecondLook, AHeadMovesAtMostByAQuarterOfTheNearestRange) {
+  make("left.png", 20, {"--aux-layers", "range"});
+  const Result far = look({"--head", "0,0,-500000", "-o", "far.png", "--json"});
+  ASSERT_EQ(far.exit_code, 0) << far.err;
+  EXPECT_TRUE(says(far.err, {"quarter of the nearest range"})) << far.err;
+  const nlohmann::json head = parse_json(far.out)["head"];
+  EXPECT_LT(head["moved_m"].get<double>(), 60000);
+  EXPECT_GT(head["moved_m"].get<double>(), 10000);
+  EXPECT_TRUE(says(look({"--head", "1,2", "-o", "b.png"}).err, {"--head", "RIGHT,UP,BACK"}));
+  EXPECT_TRUE(says(look({"--head", "1,0,0"}).err, {"-o", "head tracker"}));
+  EXPECT_TRUE(
+      says(look({"--head", "1,0,0", "--stereo", "sbs", "--stereo-method", "reproject", "-o", "b.png"}).err,
+           {"--head", "--stereo"}));
+  make("left.png", 20);
+  EXPECT_TRUE(says(look({"--head", "1,0,0", "-o", "b.png"}).err, {"left.png", "--aux-layers range"}));
+}
+
 }  // namespace
 }  // namespace app_test

@@ -10,6 +10,8 @@ namespace {
 
 // Of the budget, for the textures of each eye that is drawn by OpenGL.
 constexpr std::size_t kTextureShare = 4;
+// Of the budget, for the ranges that a moving head needs, beside it.
+constexpr std::size_t kRangeShare = 4;
 
 }  // namespace
 
@@ -36,6 +38,15 @@ core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<
     return image;
   };
   is_complete_ = true;
+  moved_m_ = 0;
+  if (!stereo && view.camera.position_m != glm::dvec3(0) && head() != nullptr) {
+    MovedView moved =
+        head_->draw_moved(view, [&](const core::View& wide) { return draw_eye(left_, false, wide, progress); });
+    moved_m_ = moved.moved_m;
+    filled_share_ = moved.filled_share;
+    if (finish) finish(moved.image);
+    return std::move(moved.image);
+  }
   if (stereo && second_) {
     EyePair eyes =
         second_->draw(view, [&](const core::View& wide) { return draw_eye(left_, false, wide, progress); });
@@ -50,6 +61,16 @@ core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<
   if (!stereo) return left;
   const core::RgbImage right = right_ ? finished_eye(*right_, false) : finished_eye(left_, true);
   return core::combine_stereo(left, right, *stereo);
+}
+
+SecondLook* StereoPanorama::head() {
+  if (!head_ && !has_no_ranges_) {
+    has_no_ranges_ = !panorama::has_ranges(left_.description);
+    if (!has_no_ranges_)
+      head_ = std::make_unique<SecondLook>(left_.description, budget_bytes_ / kRangeShare,
+                                           SecondLookOptions{.threads = threads_});
+  }
+  return head_.get();
 }
 
 core::RgbImage StereoPanorama::draw_eye(Panorama& panorama, bool is_second, const core::View& view,

@@ -54,11 +54,14 @@ class StereoPanorama {
   bool is_pair() const { return right_ || second_ || left_.description.pair != panorama::PairLayout::kNone; }
   // Returns what makes the right eye's views; null if it has an image.
   const SecondLook* second() const { return second_.get(); }
-  // Returns EyePair::filled_share of the last view with two eyes.
+  // Returns how far from the panorama's place the last view was.
+  double moved_m() const { return moved_m_; }
+  // Returns EyePair::filled_share of the last view with two eyes, or MovedView::filled_share of one from beside the place.
   double filled_share() const { return filled_share_; }
 
   // Draws a view whose axes are in the panorama's frame: both eyes in the layout, or without stereo the left
-  // one. Calls `finish` for each eye's image before the two are combined. Throws as
+  // one. A camera whose position is not 0 is beside the panorama's place (SecondLook::draw_moved()): without stereo, where the
+  // panorama has ranges; else its position changes nothing. Calls `finish` for each eye's image before the two are combined. Throws as
   // panorama::open_tiled_image() and panorama::render_view().
   core::RgbImage draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
                       const CopyProgress& progress = {},
@@ -74,9 +77,13 @@ class StereoPanorama {
   core::RgbImage draw_eye(Panorama& panorama, bool is_second, const core::View& view,
                           const CopyProgress& progress);
   void open(Panorama& panorama, const CopyProgress& progress) const;
+  SecondLook* head();
 
   Panorama left_;
   std::unique_ptr<SecondLook> second_;
+  std::unique_ptr<SecondLook> head_;  // once a view is from beside the place
+  bool has_no_ranges_ = false;        // so that there is no head_
+  double moved_m_ = 0;
   double filled_share_ = 0;
   std::optional<Panorama> right_;  // nullopt: the right eye is in the left one's file, or missing
   std::size_t budget_bytes_;       // of each image

@@ -2,8 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <glm/geometric.hpp>
 #include <optional>
 
+#include "panorama/viewer/head_offset.h"
+#include "panorama/viewer/view_ranges.h"
 #include "panorama/viewer/viewer.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/figures.h"
@@ -48,6 +51,8 @@ struct OverlookArguments {
   bool compass = false;
   std::string graphics = "auto";
   double roll_deg = 0;
+  std::string head;
+  double head_scale = 1;
   PageArguments page;
 };
 
@@ -73,6 +78,16 @@ panorama::Direction parse_direction(const std::string& option, const std::string
   return {pair.first, pair.second};
 }
 
+// Returns the head's place, metres to the right, up and backwards of the panorama's; zero without a text.
+glm::dvec3 parse_head_place(const std::string& text) {
+  if (text.empty()) return glm::dvec3(0);
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 3)
+    throw UsageError("--head '" + text +
+                     "': expected RIGHT,UP,BACK in metres from the panorama's place, as 0.5,0,-1");
+  return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
 PanoramaFiles files_of(const OverlookArguments& arguments) {
   PanoramaFiles files{arguments.panorama, arguments.right, {}};
   if (!arguments.stereo_layout.empty()) files.layout = panorama::parse_pair_layout(arguments.stereo_layout);
@@ -90,6 +105,10 @@ void check_eyes(const OverlookArguments& arguments) {
         "--stereo-layout out");
   if (!is_carried && arguments.eye_base_m > 0)
     throw UsageError("--eye-base is for --stereo-method reproject; images of two eyes have their own");
+  if (parse_head_place(arguments.head) == glm::dvec3(0)) return;
+  if (!arguments.stereo.empty())
+    throw UsageError("--head and --stereo: a head moves in views for one eye; leave one out");
+  if (arguments.output.empty()) throw UsageError("--head is for -o; in a window a head tracker moves the head");
 }
 
 StereoPanorama open_panorama(const OverlookArguments& arguments, const Common& common) {
@@ -98,6 +117,12 @@ StereoPanorama open_panorama(const OverlookArguments& arguments, const Common& c
   if (arguments.method.name == "reproject" && panorama.description().pair != panorama::PairLayout::kNone)
     throw UsageError("--stereo-method reproject: '" + panorama.description().image.string() +
                      "' is for two eyes already; leave it out");
+  if (!arguments.head.empty() && !panorama::has_ranges(panorama.description())) {
+    throw UsageError(
+        "--head: '" + panorama.description().image.string() +
+        "' has no ranges, from which a view from beside its place could be made; make it with --aux-layers "
+        "range");
+  }
   if (!arguments.stereo.empty() && !panorama.is_pair()) {
     throw UsageError(
         "--stereo " + arguments.stereo + ": '" + panorama.description().image.string() +
@@ -211,17 +236,35 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
                                   core::parse_stereo(arguments.stereo),
                                   size,
                                   arguments.graphics == "off",
-                                  arguments.scale};
+                                  arguments.scale,
+                                  arguments.head_scale};
     if (arguments.view) request.direction = parse_direction("--view", *arguments.view);
     const panorama::Viewer viewer = view_panorama(request, common);
     json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);
   }
   if (!arguments.output.empty()) {
     const panorama::Viewer viewer = make_viewer(arguments, description.map, size, common.quiet);
-    const core::RgbImage image = draw_view(panorama, viewer.view(), arguments, common);
+    core::View view = viewer.view();
+    const glm::dvec3 head_m = parse_head_place(arguments.head);
+    view.camera.position_m = panorama::head_offset(viewer.yaw_deg(), head_m);
+    const core::RgbImage image = draw_view(panorama, view, arguments, common);
     core::write_image(arguments.output, image.pixels, image.width, image.height);
     json["output"] = arguments.output;
     json["view"] = describe_view(viewer, image.width, image.height);
+    if (head_m != glm::dvec3(0)) {
+      const double asked_m = glm::length(head_m);
+      json["head"] = {
+          {"moved_m", panorama.moved_m()}, {"asked_m", asked_m}, {"filled_share", panorama.filled_share()}};
+      if (!common.quiet) {
+        std::fprintf(
+            stderr,
+            "vpe: the head is %s from the panorama's place; %.1f %% of the pixels are not in the panorama\n",
+            length_text(panorama.moved_m()).c_str(), 100 * panorama.filled_share());
+        if (panorama.moved_m() < asked_m * (1 - 1e-9))
+          std::fprintf(stderr,
+                       "vpe: note: a head moves at most by a quarter of the nearest range that it sees\n");
+      }
+    }
     if (const SecondLook* second = panorama.second(); second != nullptr && !arguments.stereo.empty()) {
       json["second_eye"] = {{"eye_base_m", second->eye_base_m()}, {"filled_share", panorama.filled_share()}};
       if (!common.quiet)
@@ -258,6 +301,15 @@ void add_overlook(CLI::App& program, Common& common) {
       ->add_option("--roll", arguments->roll_deg,
                    "Tilt of the view written with -o to its right, degrees; in a window the head's counts")
       ->check(number_within(-180, 180))
+      ->capture_default_str();
+  command->add_option(
+      "--head", arguments->head,
+      "RIGHT,UP,BACK: the view written with -o from beside the panorama's place, metres, by its layer range");
+  command
+      ->add_option(
+          "--head-scale", arguments->head_scale,
+          "Metres of the world for a metre of the tracked head, in a window, by the layer range; 0: it only turns")
+      ->check(number_within(0, 1e8))
       ->capture_default_str();
   command
       ->add_option(

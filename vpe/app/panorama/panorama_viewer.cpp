@@ -39,6 +39,7 @@ panorama::Viewer view_panorama(const PanoramaViewerRequest& request, const Commo
                               request.is_exact ? OverlookGraphics::kOff : OverlookGraphics::kAuto);
   setup.view.look = request.direction;
   setup.view.fov_deg = request.fov_deg;
+  setup.view.head_scale = request.head_scale;
   setup.view.stereo = request.stereo;
   setup.view.images = std::filesystem::current_path();
   setup.display = display_options();

@@ -19,6 +19,7 @@ struct PanoramaViewerRequest {
   Size size;              // of the window
   bool is_exact = false;  // drawn on the CPU
   double scale = 0;       // of letters; 0: that of the preferences, else of the monitor
+  double head_scale = 1;  // OverlookSetup::head_scale
 };
 
 // Throws std::runtime_error that says what to do instead if no window can be opened.
