@@ -182,7 +182,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   wanted.contour_m = 500;
   wanted.scale_bar = true;
   wanted.north_arrow = true;
-  wanted.time_code = true;
+  wanted.time_code = vpe::core::TimeCode::kFlight;
   wanted.title = "Olympus Mons";
   wanted.names = "/dev/null";
   wanted.occlusion = Occlusion::kOff;

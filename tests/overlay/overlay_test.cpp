@@ -24,7 +24,8 @@ using vpe::overlay::needs_range;
 
 Overlays all_of_them() {
   Overlays all;
-  all.legend = all.graticule = all.contours = all.scale_bar = all.north_arrow = all.time_code = true;
+  all.legend = all.graticule = all.contours = all.scale_bar = all.north_arrow = true;
+  all.time_code = vpe::core::TimeCode::kFlight;
   all.compass = vpe::core::CompassStrip::kBottom;
   all.title = "A title";
   all.names = "places";
@@ -36,7 +37,8 @@ Overlays all_of_them() {
 std::vector<Overlays> one_by_one() {
   std::vector<Overlays> each(9);
   each[0].legend = each[1].graticule = each[2].contours = each[3].scale_bar = true;
-  each[4].north_arrow = each[5].time_code = true;
+  each[4].north_arrow = true;
+  each[5].time_code = vpe::core::TimeCode::kFlight;
   each[6].title = "A title";
   each[7].names = "places";
   each[8].compass = vpe::core::CompassStrip::kTop;

@@ -270,7 +270,7 @@ TEST(PanoramaOverlay, OverlaysThatPanoramasLackAreNamed) {
   overlays.scale_bar = true;
   EXPECT_NE(not_for_panoramas(overlays).find("overlay.scale"), std::string::npos);
   overlays = {};
-  overlays.time_code = true;
+  overlays.time_code = vpe::core::TimeCode::kFlight;
   EXPECT_NE(not_for_panoramas(overlays).find("overlay.time"), std::string::npos);
   overlays = {};
   overlays.inspect = vpe::core::Inspect::kSynthetic;

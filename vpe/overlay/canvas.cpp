@@ -75,6 +75,35 @@ void Canvas::line(std::span<const glm::dvec2> points, bool closed, double width_
   cairo_stroke(context);
 }
 
+void Canvas::dashed(std::span<const glm::dvec2> points, double width_px, const Ink& ink,
+                    std::span<const double> lengths_px) {
+  cairo_t* context = state_->context.get();
+  cairo_set_dash(context, lengths_px.data(), static_cast<int>(lengths_px.size()), 0);
+  line(points, false, width_px, ink);
+  cairo_set_dash(context, nullptr, 0, 0);
+}
+
+void Canvas::paint(const Layer& image) {
+  const int stride = cairo_format_stride_for_width(CAIRO_FORMAT_ARGB32, width_);
+  std::vector<std::uint32_t> pixels(static_cast<std::size_t>(stride / 4) * static_cast<std::size_t>(height_));
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
+      const core::Rgba& p = image.pixels.at(y * static_cast<std::size_t>(width_) + x);
+      const auto premultiplied = [&](std::uint8_t value) { return (std::uint32_t{value} * p.a + 127U) / 255U; };
+      pixels[y * static_cast<std::size_t>(stride / 4) + x] =
+          std::uint32_t{p.a} << 24U | premultiplied(p.r) << 16U | premultiplied(p.g) << 8U | premultiplied(p.b);
+    }
+  }
+  const std::unique_ptr<cairo_surface_t, Release> surface(cairo_image_surface_create_for_data(
+      reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_ARGB32, width_, height_, stride));
+  require(cairo_surface_status(surface.get()));
+  cairo_t* context = state_->context.get();
+  cairo_set_source_surface(context, surface.get(), 0, 0);
+  cairo_paint(context);
+  // The source must not outlive its pixels.
+  cairo_set_source_rgba(context, 0, 0, 0, 0);
+}
+
 void Canvas::polygon(std::span<const glm::dvec2> points, const Ink& ink) {
   cairo_t* context = state_->context.get();
   set_ink(context, ink);
@@ -162,6 +191,8 @@ Canvas::Canvas(int width, int height) : width_(width), height_(height) {
 }
 Canvas::~Canvas() = default;
 void Canvas::line(std::span<const glm::dvec2>, bool, double, const Ink&) {}
+void Canvas::dashed(std::span<const glm::dvec2>, double, const Ink&, std::span<const double>) {}
+void Canvas::paint(const Layer&) {}
 void Canvas::polygon(std::span<const glm::dvec2>, const Ink&) {}
 TextSize Canvas::measure(std::string_view, const Font&) const { return {}; }
 void Canvas::text(std::string_view, glm::dvec2, double, const Lettering&) {}

@@ -47,6 +47,11 @@ class Canvas {
   int height() const { return height_; }
 
   void line(std::span<const glm::dvec2> points, bool closed, double width_px, const Ink& ink);
+  // Draws a line that is open, in strokes and gaps in turn of these lengths; without lengths it is solid.
+  void dashed(std::span<const glm::dvec2> points, double width_px, const Ink& ink,
+              std::span<const double> lengths_px);
+  // Lays an image of the canvas's size over what is drawn.
+  void paint(const Layer& image);
   void polygon(std::span<const glm::dvec2> points, const Ink& ink);
   TextSize measure(std::string_view text, const Font& font) const;
   void text(std::string_view text, glm::dvec2 centre, double angle_rad, const Lettering& style);

@@ -21,8 +21,11 @@ std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& 
 // Draws labels into gaps that it cuts into the lines. Keeps a distance between labels with the same text.
 void draw_labels(LabelLayout& layout, const std::vector<LineLabel>& labels);
 
+// Draws the layers of vector features: areas, lines, points; then their labels, as far as there is room.
+void draw_layers(LabelLayout& layout, const VisibleTerrain& terrain, core::HiddenLines hidden);
 void draw_title(LabelLayout& layout, const std::string& title);
 void draw_time(LabelLayout& layout, double time_s);
+void draw_solar_time(LabelLayout& layout, const SolarTime& solar);
 void draw_legend(LabelLayout& layout, const Scene& scene);
 void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& terrain);
 void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& terrain);

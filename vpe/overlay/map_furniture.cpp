@@ -67,6 +67,10 @@ void draw_time(LabelLayout& layout, double time_s) {
   draw_middle(layout, time_text(time_s), layout.font(18), false);
 }
 
+void draw_solar_time(LabelLayout& layout, const SolarTime& solar) {
+  draw_middle(layout, solar_time_text(solar.true_time_h, solar.solar_longitude_deg), layout.font(18), false);
+}
+
 void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& terrain) {
   Canvas& canvas = layout.canvas();
   const Centre centre = centre_of(terrain);

@@ -74,4 +74,12 @@ std::string time_text(double time_s) {
   return text;
 }
 
+std::string solar_time_text(double true_time_h, double solar_longitude_deg) {
+  const auto minutes = static_cast<int>(std::lround(true_time_h * 60)) % (24 * 60);
+  const double tenths = std::fmod(std::round(solar_longitude_deg * 10), 3600.0);
+  char text[48];
+  std::snprintf(text, sizeof text, "LTST %02d:%02d, Ls %.1f\u00b0", minutes / 60, minutes % 60, tenths / 10);
+  return text;
+}
+
 }  // namespace vpe::overlay

@@ -25,4 +25,7 @@ std::string latitude_text(double lat_deg, double step);
 // Returns "T+01:02:03.45". Hundredths are rounded down, after allowing for rounding errors of a frame's time.
 std::string time_text(double time_s);
 
+// Returns "LTST 14:32, Ls 90.1°", with minutes and tenths of a degree rounded.
+std::string solar_time_text(double true_time_h, double solar_longitude_deg);
+
 }  // namespace vpe::overlay

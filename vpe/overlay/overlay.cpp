@@ -32,12 +32,12 @@ void tint_synthetic(const VisibleTerrain& terrain, Layer& layer) {
 
 bool needs_range(const core::Overlays& overlays) {
   return overlays.graticule || overlays.contours || overlays.scale_bar || overlays.north_arrow ||
-         !overlays.names.empty() || overlays.inspect == core::Inspect::kSynthetic;
+         !overlays.names.empty() || !overlays.layers.empty() || overlays.inspect == core::Inspect::kSynthetic;
 }
 
 bool any(const core::Overlays& overlays) {
-  return needs_range(overlays) || overlays.legend || overlays.time_code || !overlays.title.empty() ||
-         overlays.compass != core::CompassStrip::kOff;
+  return needs_range(overlays) || overlays.legend || overlays.time_code != core::TimeCode::kOff ||
+         !overlays.title.empty() || overlays.compass != core::CompassStrip::kOff;
 }
 
 Layer draw(const core::Overlays& overlays, const Scene& scene) {
@@ -48,6 +48,7 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   Canvas canvas(size.x, size.y);
   LabelLayout layout(canvas);
   std::vector<LineLabel> labels;
+  if (!scene.layers.empty()) draw_layers(layout, *terrain, overlays.hidden_lines);
   if (overlays.contours && scene.contours) {
     const std::vector<float> range_m = ranges_of_same_ground(*terrain, *scene.contours);
     Scene finer = scene;
@@ -66,7 +67,8 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   if (overlays.legend) draw_legend(layout, scene);
   if (overlays.scale_bar) draw_scale_bar(layout, *terrain);
   if (overlays.north_arrow) draw_north_arrow(layout, *terrain);
-  if (overlays.time_code) draw_time(layout, scene.time_s);
+  if (overlays.time_code == core::TimeCode::kFlight) draw_time(layout, scene.time_s);
+  if (overlays.time_code == core::TimeCode::kSolar && scene.solar) draw_solar_time(layout, *scene.solar);
   if (!overlays.names.empty()) draw_names(layout, *terrain, overlays.distances);
   draw_labels(layout, labels);
   Layer layer = canvas.layer();

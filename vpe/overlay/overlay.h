@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,6 +42,20 @@ struct FinerRanges {
   double shift_px = 0;             // possible shift of their terrain in the image
 };
 
+// Holds the time of the sun at a place.
+struct SolarTime {
+  double true_time_h = 0;  // local true solar time
+  double solar_longitude_deg = 0;
+};
+
+class GroundFeatures;
+
+// Holds vector features and how much they cover.
+struct SceneLayer {
+  std::shared_ptr<const GroundFeatures> features;  // not null
+  double opacity = 1;                              // 0 to 1
+};
+
 struct Scene {
   core::View view;
   std::span<const float> range_m;  // core::Frame::range_m; required if needs_range()
@@ -52,6 +67,7 @@ struct Scene {
   std::optional<FinerRanges> contours;
   bool has_imagery = true;  // mode textured shows imagery
   double time_s = 0;
+  std::optional<SolarTime> solar;  // of TimeCode::kSolar; nullopt: none is written
   // North and up of the compass at the camera; nullopt: those of the ground below the camera.
   std::optional<mars::LocalFrame> frame;
   std::span<const core::Place> places;  // of Overlays::names; earlier ones have priority
@@ -59,6 +75,8 @@ struct Scene {
   std::function<double(const core::Place&)> height_m;
   // Returns the same in a unit direction. Empty: a place whose centre is hidden has no name.
   std::function<double(const glm::dvec3&)> ground_m;
+  // Of Overlays::layers, the lowest first. They need ground_m.
+  std::vector<SceneLayer> layers;
   // Returns whether the terrain in a direction is synthetic, nullopt where that is not known. Empty: nothing is tinted.
   std::function<std::optional<bool>(const glm::dvec3&)> is_synthetic;
 };

@@ -162,7 +162,7 @@ class PanoramaLayout {
   }
 
   void names() {
-    constexpr double kSmallest_px = 4;
+    constexpr double kSmallestName_px = 4;
     constexpr std::size_t kMost = 1000;
     std::vector<const PanoramaName*> sorted;
     for (const PanoramaName& name : scene_.names) sorted.push_back(&name);
@@ -177,7 +177,7 @@ class PanoramaLayout {
     const double px_per_rad = scene_.px_per_deg / mars::kRadiansPerDegree;
     std::size_t count = 0;
     for (const PanoramaName* name : sorted) {
-      if (name->diameter_m > 0 && apparent(*name) * px_per_rad < px(kSmallest_px)) continue;
+      if (name->diameter_m > 0 && apparent(*name) * px_per_rad < px(kSmallestName_px)) continue;
       const auto at = scene_.place(name->azimuth_deg, name->elevation_deg);
       if (at && draw_name(*name, *at) && ++count == kMost) return;
     }
@@ -278,12 +278,13 @@ double panorama_unit(const PanoramaScene& scene) {
 std::string not_for_panoramas(const core::Overlays& overlays) {
   if (overlays.graticule) return "overlay.graticule: lines on the terrain are not drawn over panoramas";
   if (overlays.contours) return "overlay.contours: lines on the terrain are not drawn over panoramas";
+  if (!overlays.layers.empty()) return "overlay.layers: features are not drawn over panoramas";
   if (overlays.scale_bar)
     return "overlay.scale: a panorama has no centre with one scale; see overlay.distances";
   if (overlays.north_arrow) return "overlay.north: a panorama shows all directions; see overlay.compass";
   if (overlays.inspect == core::Inspect::kSynthetic)
     return "inspect=synthetic: a panorama is not tinted; --aux-layers synthetic tells it for each pixel";
-  if (overlays.time_code) return "overlay.time: a panorama is not a frame of a flight";
+  if (overlays.time_code != core::TimeCode::kOff) return "overlay.time: a panorama is not a frame of a flight";
   return {};
 }
 

@@ -23,7 +23,7 @@ constexpr int kMostMargin = 12;
 
 // Returns true if something lies over images at a fixed place.
 bool has_fixed_overlay(const core::Overlays& o) {
-  return o.legend || o.scale_bar || o.north_arrow || o.time_code || !o.title.empty() ||
+  return o.legend || o.scale_bar || o.north_arrow || o.time_code != core::TimeCode::kOff || !o.title.empty() ||
          o.compass != core::CompassStrip::kOff;
 }
 

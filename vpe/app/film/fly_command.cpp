@@ -29,6 +29,7 @@
 #include "vpe/app/planet/flight_ground.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/layer_list.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -110,6 +111,8 @@ std::vector<fs::path> inputs_of(const FlyArguments& arguments, const scripts::Fl
     inputs.emplace_back(settings.values().names);
     inputs.emplace_back(settings.values().palette);
     inputs.emplace_back(settings.values().scene);
+    for (const core::LayerFile& layer : core::parse_layer_list(settings.values().layers))
+      inputs.emplace_back(layer.path);
   };
   add();
   for (const scripts::SetCommand& set : flight.sets) {
@@ -180,7 +183,7 @@ std::optional<std::string> opengl_problem() {
   }
 }
 
-// Reports a bad gazetteer before the first frame.
+// Reports a bad gazetteer and bad vector files before the first frame.
 void load_names(FrameOverlays& overlays, core::Settings settings, const scripts::Flight& flight) {
   overlays.load(settings.values());
   for (const scripts::SetCommand& set : flight.sets) {

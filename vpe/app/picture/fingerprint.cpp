@@ -5,6 +5,7 @@
 
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/picture/scene_digests.h"
+#include "vpe/core/appearance/layer_list.h"
 #include "vpe/core/appearance/palette.h"
 
 namespace vpe::app {
@@ -62,8 +63,10 @@ std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& re
   }
   if (const auto file = core::palette_file(settings.values().palette)) add(digest, core::read_palette(*file));
   const core::SettingsValues& values = settings.values();
-  if (values.time_code) digest.add("time").add(time_s);
+  if (values.time_code == core::TimeCode::kFlight) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
+  for (const core::LayerFile& layer : core::parse_layer_list(values.layers))
+    digest.add("layer").add(checksum_of(std::filesystem::path(layer.path)));
   if (!values.scene.empty()) {
     const SceneDigests::Known scene =
         basis.scenes ? basis.scenes->of(values.scene) : SceneDigests().of(values.scene);

@@ -1,15 +1,42 @@
 #include "vpe/app/picture/frame_overlays.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "mars/vector/feature_reader.h"
 #include "paging/planet/planet_look.h"
+#include "paging/surface/place_cursor.h"
 #include "paging/surface/query.h"
 #include "vpe/app/picture/contour_ranges.h"
+#include "vpe/app/picture/sun_statement.h"
+#include "vpe/core/appearance/layer_list.h"
+#include "vpe/overlay/ground_features.h"
 
 namespace vpe::app {
+namespace {
+
+// Returns the style of the features of a layer whose file says nothing: colours that differ for all kinds of sight (Okabe and
+// Ito 2008).
+mars::FeatureStyle default_style(std::size_t number) {
+  constexpr std::array<base::Rgb, 7> kColours{{{230, 159, 0},
+                                               {86, 180, 233},
+                                               {0, 158, 115},
+                                               {240, 228, 66},
+                                               {0, 114, 178},
+                                               {213, 94, 0},
+                                               {204, 121, 167}}};
+  const mars::StyleColour colour{kColours[number % kColours.size()], 1};
+  mars::FeatureStyle style;
+  style.stroke = colour;
+  style.marker = colour;
+  style.label_colour = {{255, 255, 255}, 1};
+  return style;
+}
+
+}  // namespace
 
 FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
     : planet_(std::move(planet)),
@@ -25,11 +52,31 @@ void FrameOverlays::change_planet(std::shared_ptr<const paging::PlanetFile> plan
 }
 
 void FrameOverlays::load(const core::Overlays& overlays) {
+  for (const core::LayerFile& file : core::parse_layer_list(overlays.layers)) {
+    if (layers_.contains(file.path)) continue;
+    const auto first = static_cast<std::size_t>(layers_.size());
+    auto& kept = layers_[file.path];
+    try {
+      for (mars::FeatureLayer& layer : mars::read_features(file.path, {}, planet_->radius_m())) {
+        kept.push_back(std::make_shared<const overlay::GroundFeatures>(std::move(layer),
+                                                                       default_style(first + kept.size())));
+      }
+    } catch (...) {
+      layers_.erase(file.path);
+      throw;
+    }
+  }
   if (overlays.names.empty() || names_.contains(overlays.names)) return;
   Names names;
   names.places = core::read_gazetteer(overlays.names);
   names.height_m.assign(names.places.size(), std::numeric_limits<double>::quiet_NaN());
   names_.emplace(overlays.names, std::move(names));
+}
+
+void FrameOverlays::add_layers(const core::Overlays& overlays, overlay::Scene& scene) const {
+  for (const core::LayerFile& file : core::parse_layer_list(overlays.layers)) {
+    for (const auto& features : layers_.at(file.path)) scene.layers.push_back({features, file.opacity});
+  }
 }
 
 overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const FrameGround& ground,
@@ -59,7 +106,13 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const Fram
       }
       return height_m;
     };
-    scene.ground_m = [this](const glm::dvec3& direction) { return surface_.at(direction).height_m; };
+  }
+  add_layers(settings, scene);
+  paging::PlaceCursor cursor(surface_);
+  scene.ground_m = [&cursor](const glm::dvec3& direction) { return cursor.move_to(direction).height_m; };
+  if (settings.time_code == core::TimeCode::kSolar) {
+    const auto sun = sun_statement(settings, mars::lon_lat(request.view.camera.position_m));
+    if (sun) scene.solar = {sun->true_solar_time_h, sun->solar_longitude_deg};
   }
   if (settings.inspect == core::Inspect::kSynthetic)
     scene.is_synthetic = [this](const glm::dvec3& place) { return paging::is_synthetic(surface_, place); };

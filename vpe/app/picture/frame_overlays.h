@@ -38,7 +38,8 @@ class FrameOverlays {
   // Goes over to another version of the planet: heights of places are looked up again.
   void change_planet(std::shared_ptr<const paging::PlanetFile> planet);
 
-  // Reads the gazetteer that the settings name, once. Throws what core::read_gazetteer() throws.
+  // Reads the gazetteer and the vector files that the settings name, each once. Throws what core::read_gazetteer() and
+  // mars::read_features() throw.
   void load(const core::Overlays& overlays);
 
   // Draws the overlay layer of a frame that was drawn for the request, with its range image when
@@ -47,6 +48,8 @@ class FrameOverlays {
   overlay::Layer layer(const core::DrawRequest& request, const FrameGround& ground, double time_s);
 
  private:
+  void add_layers(const core::Overlays& overlays, overlay::Scene& scene) const;
+
   struct Names {
     std::vector<core::Place> places;
     std::vector<double> height_m;  // NaN: not looked up yet
@@ -55,7 +58,8 @@ class FrameOverlays {
   std::shared_ptr<const paging::PlanetFile> planet_;
   paging::Surface surface_;
   bool has_imagery_;
-  std::map<std::string, Names> names_;  // by file
+  std::map<std::string, Names> names_;                                                         // by file
+  std::map<std::string, std::vector<std::shared_ptr<const overlay::GroundFeatures>>> layers_;  // by file
 };
 
 }  // namespace vpe::app

@@ -145,14 +145,27 @@ nlohmann::json explanation(const RenderArguments& arguments, const Common& commo
                                                         : explain_lod(request, planet, memory_bytes(common));
 }
 
-void write_image_files(const RenderArguments& arguments, const Common& common, const core::DrawRequest& request,
-                       const core::DrawResult& result, const RenderRecipe& recipe,
-                       const paging::PlanetFile& planet, std::span<const lod::TileExplanation> cast) {
+// Writes the image of a screen, which has no recipe: that of another image says nothing of rooms.
+void write_screen_image(const std::string& output, const ChosenScreen& screen, const core::Frame& frame) {
+  const core::RgbImage image = image_of_screen(screen, {frame.width, frame.height, frame.colour});
+  core::ImageOptions options;
+  options.png_texts = {{"Software", std::string("vpe ") + version()}};
+  core::write_image(output, image.pixels, image.width, image.height, options);
+}
+
+void write_image_files(const RenderArguments& arguments, const Common& common, const ParsedRender& parsed,
+                       const core::DrawRequest& request, const core::DrawResult& result,
+                       const RenderRecipe& recipe, const paging::PlanetFile& planet,
+                       std::span<const lod::TileExplanation> cast) {
   const core::Frame& frame = result.frame;
   const nlohmann::ordered_json certificate = core::to_json(result.certificate);
   core::ImageOptions options;
-  options.png_texts = recipe_texts(recipe, planet.meta(), certificate);
-  core::write_image(arguments.output, frame.colour, frame.width, frame.height, options);
+  if (parsed.screen) {
+    write_screen_image(arguments.output, *parsed.screen, frame);
+  } else {
+    options.png_texts = recipe_texts(recipe, planet.meta(), certificate);
+    core::write_image(arguments.output, frame.colour, frame.width, frame.height, options);
+  }
   if (!arguments.range.empty()) {
     options.tiff_metadata = range_metadata(recipe.pose, request.view, planet.meta());
     core::write_tiff(arguments.range, frame.range_m, frame.width, frame.height, options);
@@ -260,6 +273,8 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!names.empty()) (void)core::read_gazetteer(names);
 
   const auto planet = with_earlier(open_planet(arguments.planet, common), arguments.earlier, common);
+  FrameOverlays overlays(planet);
+  overlays.load(parsed.settings.values());
   require_earlier(parsed.settings.values(), *planet);
   note_illustration(planet->meta(), common.quiet);
   require_known_sun(parsed.settings.values(), planet->meta().body);
@@ -312,7 +327,7 @@ void render(RenderArguments& arguments, const Common& common) {
       require_complete(arguments.image, *ground.contours);
       if (!common.quiet) print_failures(ground.contours->failures);
     }
-    const overlay::Layer layer = FrameOverlays(planet).layer(one, ground, 0);
+    const overlay::Layer layer = overlays.layer(one, ground, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {
@@ -322,7 +337,7 @@ void render(RenderArguments& arguments, const Common& common) {
   };
   if (arguments.stereo.layout.empty()) {
     const core::DrawResult result = finish(request, renderer->draw(request));  // sets `cast`
-    write_image_files(arguments, common, request, result, recipe, *planet, cast);
+    write_image_files(arguments, common, parsed, request, result, recipe, *planet, cast);
   } else {
     const std::unique_ptr<CarriedDrawer> pair = pair_drawer(arguments, common, planet, request, *renderer);
     const auto draw = [&](const core::DrawRequest& one, Eye eye) {
@@ -371,6 +386,7 @@ void add_render(CLI::App& program, Common& common) {
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   add_stereo_options(*command, arguments->stereo);
+  add_screen_options(*command, arguments->screen);
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
   add_compare_option(*command, arguments->earlier);
@@ -387,6 +403,8 @@ void add_render(CLI::App& program, Common& common) {
         "vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 --stereo anaglyph --stereo-method reproject -o pair.png"},
        {"what has changed since, from 2 km above the ground",
         "vpe render after.vpe --compare before.vpe --pose 137.4,-4.6,0,0,-30,0 --height 2000 -o change.png"},
+       {"what a screen that lies on a table shows to a head 10 cm to the right",
+        "vpe render mars.vpe --pose -59.2,-13.7,8000,0,0,0 --screens scripts/screens/table.screens.toml --head 0.1,0,0 -o table.png"},
        {"the same image again", "vpe render mars.vpe --from-image view.png -o same.png"}});
   command->callback([arguments, &common] { render(*arguments, common); });
 }

@@ -9,6 +9,7 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/frame_overlays.h"
+#include "vpe/core/appearance/layer_list.h"
 
 namespace vpe::app {
 
@@ -16,10 +17,10 @@ namespace {
 
 // Options that the recipe of an image sets. A configuration file may have defaults of these; naming one beside
 // --from-image contradicts it.
-constexpr std::array<std::string_view, 16> kOptionsOfRecipes{
-    "--pose",        "--height",    "--cull-from",     "--size",      "--fov",    "--set",
-    "--backend",     "--tolerance", "--sun",           "--interest",  "--stereo", "--eye-base",
-    "--convergence", "--latitude",  "--stereo-method", "--stereo-gap"};
+constexpr std::array<std::string_view, 20> kOptionsOfRecipes{
+    "--pose",          "--height",     "--cull-from", "--size",   "--fov",      "--set",         "--backend",
+    "--tolerance",     "--sun",        "--interest",  "--stereo", "--eye-base", "--convergence", "--latitude",
+    "--stereo-method", "--stereo-gap", "--screens",   "--screen", "--head",     "--screen-eye"};
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
@@ -35,6 +36,14 @@ void check_overlay_layer(const std::string& path, const core::Overlays& overlays
 
 void require_valid(const core::View& view) {
   if (const std::string error = core::check(view); !error.empty()) throw UsageError(error);
+}
+
+// Returns the files that an image is made of.
+std::vector<std::filesystem::path> inputs_of_image(const RenderArguments& arguments,
+                                                   const core::SettingsValues& settings) {
+  std::vector<std::filesystem::path> inputs{arguments.planet, settings.names, settings.palette, settings.scene};
+  for (const core::LayerFile& layer : core::parse_layer_list(settings.layers)) inputs.emplace_back(layer.path);
+  return inputs;
 }
 
 }  // namespace
@@ -99,6 +108,15 @@ ParsedRender parse_view(const RenderArguments& arguments) {
       throw UsageError("--cull-from '" + *arguments.cull_from + "': give numbers, and not a name");
     parsed.cull_pose = cull.pose;
   }
+  parsed.screen = choose_screen(arguments.screen);
+  if (parsed.screen && !arguments.stereo.layout.empty())
+    throw UsageError("--screens and --stereo: draw each eye by itself with --screen-eye left and right");
+  if (parsed.screen && parsed.cull_pose) throw UsageError("--screens and --cull-from: leave one out");
+  if (parsed.screen && parsed.screen->lens() != nullptr &&
+      !(arguments.range + arguments.overlay_layer).empty()) {
+    throw UsageError(
+        "--range and --overlay-layer: the image of a screen behind a lens is bent, and they are not; leave them out");
+  }
   return parsed;
 }
 
@@ -110,7 +128,7 @@ void check_render_outputs(const RenderArguments& arguments, const core::Settings
                  {"--overlay-layer", arguments.overlay_layer, FileKind::kImage},
                  {"--stereo-map", arguments.stereo.map, FileKind::kImage},
                  {"--stereo-differences", arguments.stereo.differences, FileKind::kImage}},
-                {arguments.planet, settings.names, settings.palette, settings.scene});
+                inputs_of_image(arguments, settings));
   check_overlay_layer(arguments.overlay_layer, settings);
   check_stereo(arguments.stereo);
   if (arguments.stereo.layout.empty()) return;
@@ -124,7 +142,11 @@ void check_render_outputs(const RenderArguments& arguments, const core::Settings
 ResolvedView resolve_view(const ParsedRender& parsed, const std::shared_ptr<const paging::PlanetFile>& planet) {
   core::DrawRequest request = parsed.request;
   const mars::Pose pose = resolve(parsed.pose, planet, request.settings.exaggeration);
-  request.view.camera = mars::to_camera(pose, planet->radius_m());
+  if (parsed.screen) {
+    request.view = screen_view_of(*parsed.screen, pose, planet->radius_m());
+  } else {
+    request.view.camera = mars::to_camera(pose, planet->radius_m());
+  }
   require_valid(request.view);
   request.sun = sun_for(request.settings, pose);
   if (parsed.cull_pose) {

@@ -10,6 +10,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/render_recipe.h"
+#include "vpe/app/picture/screen_option.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/core/frame.h"
 
@@ -34,6 +35,7 @@ struct RenderArguments {
   bool allow_underground = false;
   RenderOptions image;
   StereoArguments stereo;
+  ScreenArguments screen;
 };
 
 // Holds the arguments, parsed and checked. Only what needs the planet is left to resolve_request().
@@ -41,6 +43,7 @@ struct ParsedRender {
   core::Settings settings;
   ParsedPose pose;
   std::optional<mars::Pose> cull_pose;  // of the view whose tiles are drawn
+  std::optional<ChosenScreen> screen;   // whose image is drawn
   core::DrawRequest request;            // without camera, cull view and sun
 };
 

@@ -24,6 +24,16 @@ enum class CompassStrip {
   kHorizon,  // along elevation 0; along the lower edge if the image does not show it
 };
 
+// Selects the time that is written into an image.
+enum class TimeCode {
+  kOff,
+  kFlight,  // of the frame in its flight
+  kSolar,   // local true solar time and solar longitude at the ground below the camera
+};
+
+// Selects how parts of lines are drawn that ground hides.
+enum class HiddenLines { kLeftOut, kDashed };
+
 // Selects what an image shows about how it is made.
 enum class Inspect {
   kNone,
@@ -44,11 +54,14 @@ struct Overlays {
   double contour_tolerance_px = 0.1;
   bool scale_bar = false;
   bool north_arrow = false;
-  bool time_code = false;
+  TimeCode time_code = TimeCode::kOff;
   CompassStrip compass = CompassStrip::kOff;
   std::string title;
   std::string names;       // path of a gazetteer, a CSV file (vpe/core/appearance/gazetteer.h)
   bool distances = false;  // from the camera, beside names
+  // Paths of vector files with ';' between them, the lowest first; after each path may follow '@' and an opacity.
+  std::string layers;
+  HiddenLines hidden_lines = HiddenLines::kLeftOut;  // of layers
   Inspect inspect = Inspect::kNone;
 
   bool operator==(const Overlays&) const = default;

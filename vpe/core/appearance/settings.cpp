@@ -2,6 +2,7 @@
 
 #include "mars/geodesy/mars_time.h"
 #include "vpe/core/appearance/gazetteer.h"
+#include "vpe/core/appearance/layer_list.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/core/registry/former_names.h"
 #include "vpe/core/registry/key_registry.h"
@@ -106,7 +107,12 @@ const KeyRegistry<SettingsValues>& registry() {
       {"overlay.scale", Declare::toggle<&V::scale_bar>(), "",
        "bar of a round length at the ground in the image centre"},
       {"overlay.north", Declare::toggle<&V::north_arrow>(), "", "arrow to the north"},
-      {"overlay.time", Declare::toggle<&V::time_code>(), "", "time of the frame in its flight"},
+      {"overlay.time",
+       Declare::choice<&V::time_code>(
+           {word("off", TimeCode::kOff), word("on", TimeCode::kFlight), word("ltst", TimeCode::kSolar)}),
+       "",
+       "time of the frame in its flight (on), or local true solar time and solar longitude below the camera (ltst; the sun "
+       "must be a date or a season)"},
       {"overlay.compass",
        Declare::choice<&V::compass>({word("off", CompassStrip::kOff), word("on", CompassStrip::kBottom),
                                      word("top", CompassStrip::kTop), word("horizon", CompassStrip::kHorizon)}),
@@ -116,6 +122,16 @@ const KeyRegistry<SettingsValues>& registry() {
        "", "names of places, except those hidden by ground"},
       {"overlay.distances", Declare::toggle<&V::distances>(), "",
        "distance from the camera beside each name, in a straight line"},
+      {"overlay.layers",
+       Declare::text<&V::layers>("vector files with ';' between them, each with @OPACITY or without",
+                                 layers_problem),
+       "",
+       "points, lines and polygons of vector files on the ground, the first file lowest: GeoPackage, GeoJSON, Shapefile, KML, "
+       "GPX, CSV"},
+      {"overlay.layers.hidden",
+       Declare::choice<&V::hidden_lines>(
+           {word("off", HiddenLines::kLeftOut), word("dashed", HiddenLines::kDashed)}),
+       "", "parts of lines of layers that ground hides"},
       {"lod.tolerance", Declare::number<&V::lod_tolerance_px>(0, 1000), "px",
        "largest screen-space error that may be drawn; 0 draws the exact surface (backend ray: see rays.mode)"},
       {"lod.triangles", Declare::integer<&V::lod_triangles>(0, 1'000'000'000), "",

@@ -1,0 +1,40 @@
+// Lines of features on the ground, as an image shows them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+#include "vpe/overlay/ground_features.h"
+#include "vpe/overlay/visible_terrain.h"
+
+namespace vpe::overlay {
+
+// Holds a part of a line that is seen, or hidden by ground, throughout.
+struct DrapedRun {
+  std::uint32_t feature = 0;
+  bool is_hidden = false;
+  std::vector<glm::dvec2> points_px;  // of the layer; at least two
+  double distance_m = 0;              // of its middle from the camera
+};
+
+// Calls `draw` with each run of all lines in and beside an image, in the order of the features. Places on a line are followed
+// until they are at most a pixel apart: between them the run is straight, so that it is off the line on the reference surface
+// by no more than the ground rises between two pixels. A place is hidden if all ground in the 3 x 3 pixels about it is nearer by
+// more than kHiddenLineShare of the distance and the image's own errors.
+inline constexpr double kHiddenLineShare = 5e-4;
+void drape_lines(const GroundFeatures& features, const VisibleTerrain& terrain,
+                 const std::function<void(const DrapedRun&)>& draw);
+
+// Returns where the image shows a place on the ground: its position in the layer, its distance from the camera, and whether
+// ground hides it; nullopt behind the camera.
+struct DrapedPlace {
+  glm::dvec2 at_px;
+  double distance_m = 0;
+  bool is_hidden = false;
+};
+std::optional<DrapedPlace> drape(const VisibleTerrain& terrain, glm::dvec2 place_deg);
+
+}  // namespace vpe::overlay
