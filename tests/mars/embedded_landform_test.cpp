@@ -291,6 +291,21 @@ TEST(EmbeddedCraters, LeavePostsOfTheDataFree) {
   }
 }
 
+TEST(EmbeddedCraters, LargerOnesWouldCoverPosts) {
+  // Posts are an eighth of a degree apart: half the diagonal between them is 5.24 km on the equator.
+  Random random(83);
+  double largest_m = 0;
+  for (int k = 0; k < 100'000; ++k) {
+    const LonLat p = lon_lat(random.direction());
+    const double lon_deg = (std::floor(p.lon_deg * 8) + 0.5) / 8;
+    const double lat_deg = std::min((std::floor(p.lat_deg * 8) + 0.5) / 8, 90.0 - 0.0625);
+    largest_m =
+        std::max(largest_m, angle_between_rad(direction({lon_deg, lat_deg}), direction(p)) * kMarsRadius_m);
+  }
+  EXPECT_LT(largest_m, 5250);
+  EXPECT_GT(largest_m, 4800);
+}
+
 TEST(EmbeddedCraters, EveryCandidateIsFoundFromEveryPlaceItTouches) {
   Random random(81);
   int checked = 0;
