@@ -264,9 +264,9 @@ const std::vector<Layer>& layers() {
        true},
       {"vpe/app", "vpe::app",
        below_app({"vpe/app/cli", "vpe/app/get", "vpe/app/planet", "vpe/app/planet/info", "vpe/app/measure",
-                  "vpe/app/match", "vpe/app/sun", "vpe/app/visibility", "vpe/app/scene", "vpe/app/picture",
-                  "vpe/app/film", "vpe/app/panorama", "vpe/app/surface", "vpe/app/report",
-                  "vpe/app/report/papers"}),
+                  "vpe/app/match", "vpe/app/sun", "vpe/app/visibility", "vpe/app/map", "vpe/app/contour",
+                  "vpe/app/route", "vpe/app/viewshed", "vpe/app/scene", "vpe/app/picture", "vpe/app/film",
+                  "vpe/app/panorama", "vpe/app/surface", "vpe/app/report", "vpe/app/report/papers"}),
        true},
       {"tests", "", below_app({"vpe/app"}), true, true},
   };

@@ -60,7 +60,7 @@ TEST_F(GroundGridTest, HasTheValuesOfQuery) {
   std::int64_t nodata = 0;
   double finest_m = std::numeric_limits<double>::infinity();
   double coarsest_m = 0;
-  double error_m = -1;
+  double difference_m = -1;
   for (int row = 0; row < frame.rows; ++row)
     for (int column = 0; column < frame.columns; ++column) {
       const paging::PlaceAnswer answer = paging::query(*surface_, frame.to_place({column, row}));
@@ -72,7 +72,7 @@ TEST_F(GroundGridTest, HasTheValuesOfQuery) {
       nodata += answer.nodata ? 1 : 0;
       finest_m = std::min(finest_m, answer.spacing_m);
       coarsest_m = std::max(coarsest_m, answer.spacing_m);
-      if (answer.resampling.posts > 0) error_m = std::max(error_m, double{answer.resampling.max_m});
+      if (answer.resampling.posts > 0) difference_m = std::max(difference_m, double{answer.resampling.max_m});
     }
   EXPECT_GT(nodata, 0);
   EXPECT_EQ(grid.ground.pixels, std::int64_t{frame.columns} * frame.rows);
@@ -80,7 +80,7 @@ TEST_F(GroundGridTest, HasTheValuesOfQuery) {
   EXPECT_EQ(grid.ground.synthetic, 0);
   EXPECT_EQ(grid.ground.finest_spacing_m, finest_m);
   EXPECT_EQ(grid.ground.coarsest_spacing_m, coarsest_m);
-  EXPECT_EQ(grid.ground.error_max_m, error_m);
+  EXPECT_EQ(grid.ground.error_max_m, difference_m);
   EXPECT_EQ(grid.ground.sources, (std::set<int>{0}));
 }
 

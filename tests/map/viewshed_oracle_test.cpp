@@ -26,7 +26,7 @@ struct ShedCase {
   const char* name;
   int column = 128;
   int row = 128;
-  double eye_m = 2;
+  double observer_m = 2;
   double target_m = 0;
   double radius_m = std::numeric_limits<double>::infinity();
 };
@@ -35,7 +35,7 @@ ViewshedOptions options_of(const ShedCase& c) {
   ViewshedOptions options;
   options.column = c.column;
   options.row = c.row;
-  options.observer_height_m = c.eye_m;
+  options.observer_height_m = c.observer_m;
   options.target_height_m = c.target_m;
   options.radius_m = c.radius_m;
   return options;
@@ -214,7 +214,7 @@ TEST(Rise, IsThatOfTheClosedForm) {
   for (int trial = 0; trial < 2000; ++trial) {
     RiseView view;
     view.radius_m = random.log_uniform(1e3, 1e8);
-    view.eye_m = random.uniform(-0.01, 0.5) * view.radius_m;
+    view.observer_m = random.uniform(-0.01, 0.5) * view.radius_m;
     const int across = random.integer(-3000, 3000);
     const int first = random.integer(-3000, 3000);
     const double posts = std::hypot(across, std::max(std::abs(first), std::abs(first + 32)));
@@ -231,9 +231,10 @@ TEST(Rise, IsThatOfTheClosedForm) {
       const double a = distance_m / view.radius_m;
       const double height_m = double{heights_m[at]} + 1.5;
       const double wanted_m = distance_m *
-                              ((view.radius_m + height_m) * std::cos(a) - (view.radius_m + view.eye_m)) /
+                              ((view.radius_m + height_m) * std::cos(a) - (view.radius_m + view.observer_m)) /
                               ((view.radius_m + height_m) * std::sin(a));
-      const double size_m = std::abs(height_m) + std::abs(view.eye_m) + distance_m * a + std::abs(wanted_m);
+      const double size_m =
+          std::abs(height_m) + std::abs(view.observer_m) + distance_m * a + std::abs(wanted_m);
       ASSERT_NEAR(double{found[at]}, wanted_m, 1e-6 * size_m) << view.radius_m << " " << a;
     }
     std::vector<float> back = found;
@@ -241,7 +242,7 @@ TEST(Rise, IsThatOfTheClosedForm) {
     for (int n = 0; n < 33; ++n) {
       const auto at = static_cast<std::size_t>(n);
       const double distance_m = view.spacing_m * std::hypot(across, first + n);
-      const double size_m = double{std::abs(heights_m[at])} + std::abs(view.eye_m) +
+      const double size_m = double{std::abs(heights_m[at])} + std::abs(view.observer_m) +
                             distance_m * distance_m / view.radius_m + double{std::abs(found[at])};
       ASSERT_NEAR(double{back[at]}, 1.5, 1e-6 * size_m + 1e-4) << view.radius_m;
     }

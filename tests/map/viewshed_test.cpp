@@ -58,13 +58,13 @@ TEST(ViewshedForm, APlaneIsSeenWhole) {
 TEST(ViewshedForm, AWallHidesWhatIsUnderTheLineOverItsTop) {
   HeightGrid grid = flat_grid(401, 401, 5);
   for (int column = 0; column < 401; ++column) post(grid, column, 150) = 10;
-  for (const double eye_m : {2.0, 40.0}) {
-    const ViewshedOptions options = observer_at(200, 200, eye_m);
+  for (const double observer_m : {2.0, 40.0}) {
+    const ViewshedOptions options = observer_at(200, 200, observer_m);
     const HeightGrid needed = needed_by_two(grid, options);
     const Viewshed shed = seen_by_two(grid, options);
     each_post(grid, [&](int column, int row) {
       // Lines of sight over the wall's top are those of a plane.
-      const double line_m = eye_m + (10 - eye_m) * (200 - row) / 50;
+      const double line_m = observer_m + (10 - observer_m) * (200 - row) / 50;
       const double wanted_m = row >= 150 ? 0 : std::max(0.0, line_m);
       ASSERT_NEAR(double{needed.at(column, row)}, wanted_m, 1e-4) << column << " " << row;
       if (std::abs(line_m) > 1e-3) {
@@ -77,14 +77,14 @@ TEST(ViewshedForm, AWallHidesWhatIsUnderTheLineOverItsTop) {
 
 TEST(ViewshedForm, ASphereEndsAtItsHorizon) {
   for (const double radius_m : {kMars_m, 11'100.0}) {
-    for (const double eye_m : {2.0, 30.0}) {
+    for (const double observer_m : {2.0, 30.0}) {
       for (const double target_m : {0.0, 5.0}) {
         const auto horizon_m = [&](double height_m) {
           return radius_m * std::acos(radius_m / (radius_m + height_m));
         };
-        const double most_m = horizon_m(eye_m) + horizon_m(target_m);
+        const double most_m = horizon_m(observer_m) + horizon_m(target_m);
         HeightGrid grid = flat_grid(401, 401, most_m / 150);
-        ViewshedOptions options = observer_at(200, 200, eye_m);
+        ViewshedOptions options = observer_at(200, 200, observer_m);
         options.radius_m = radius_m;
         options.target_height_m = target_m;
         const Viewshed shed = seen_by_two(grid, options);
@@ -92,7 +92,7 @@ TEST(ViewshedForm, ASphereEndsAtItsHorizon) {
           const double distance_m = grid.spacing_m * std::hypot(column - 200, row - 200);
           if (std::abs(distance_m - most_m) < 1.5 * grid.spacing_m) return;
           ASSERT_EQ(sight_at(shed, column, row), distance_m < most_m ? Sight::seen : Sight::hidden)
-              << radius_m << " " << eye_m << " " << target_m << " " << column << " " << row;
+              << radius_m << " " << observer_m << " " << target_m << " " << column << " " << row;
         });
       }
     }
@@ -100,12 +100,12 @@ TEST(ViewshedForm, ASphereEndsAtItsHorizon) {
 }
 
 TEST(ViewshedForm, BeyondTheHorizonHeightsAreNeeded) {
-  const double eye_m = 10;
-  ViewshedOptions options = observer_at(200, 200, eye_m);
+  const double observer_m = 10;
+  ViewshedOptions options = observer_at(200, 200, observer_m);
   options.radius_m = kMars_m;
   HeightGrid grid = flat_grid(401, 401, 250);
   const HeightGrid needed = needed_by_two(grid, options);
-  const double horizon_rad = std::acos(kMars_m / (kMars_m + eye_m));
+  const double horizon_rad = std::acos(kMars_m / (kMars_m + observer_m));
   each_post(grid, [&](int column, int row) {
     const double angle_rad = grid.spacing_m * std::hypot(column - 200, row - 200) / kMars_m;
     const double wanted_m =

@@ -48,7 +48,7 @@ struct MapSampler::Pixel {
   paging::SurfacePoint point;
   double spacing_m;
   std::optional<int> source;  // nullopt: not known
-  double error_m;             // NaN: not known
+  double resampling_m;        // NaN: not known
   paging::TerrainShader::Cursor& colours;
 };
 
@@ -95,8 +95,8 @@ MapRows MapSampler::rows(int first_row, int count, MapGround& ground) const {
     ground.nodata += point.nodata ? 1 : 0;
     if (pixel.source) {
       const auto resampling = cursor.resampling(*pixel.source);
-      if (resampling.error.posts > 0) pixel.error_m = resampling.error.max_m;
-      ground.error_max_m = std::fmax(ground.error_max_m, pixel.error_m);
+      if (resampling.error.posts > 0) pixel.resampling_m = resampling.error.max_m;
+      ground.error_max_m = std::fmax(ground.error_max_m, pixel.resampling_m);
       ground.sources.insert(*pixel.source);
       ground.synthetic += meta.sources.at(static_cast<std::size_t>(*pixel.source)).illustration ? 1 : 0;
     }
@@ -150,7 +150,7 @@ void MapSampler::fill(const Pixel& pixel, std::span<float> values) const {
       case MapBand::source_spacing: out = source ? static_cast<float>(source->resolution_m) : kMapNodata; break;
       case MapBand::post_spacing: out = of_ground(pixel.spacing_m); break;
       case MapBand::synthetic: out = source ? (source->illustration ? 1.0F : 0.0F) : kMapNodata; break;
-      case MapBand::error: out = static_cast<float>(pixel.error_m); break;
+      case MapBand::error: out = static_cast<float>(pixel.resampling_m); break;
     }
   }
 }

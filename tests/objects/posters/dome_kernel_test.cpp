@@ -123,11 +123,11 @@ int check_places(const Case& c, Kind kind, double elevation_rad, double most_err
       // The least of the pixel's two sides, as seen from the dome's middle.
       const double pixel_rad = std::min(angle(at, c.met(c.ray(column + 1.5, row + 0.5))),
                                         angle(at, c.met(c.ray(column + 0.5, row + 1.5))));
-      const double error_px = angle(at, shown) / pixel_rad;
-      EXPECT_LE(error_px, most_error_px) << column << " " << row << " focal " << c.focal_px;
+      const double shift_px = angle(at, shown) / pixel_rad;
+      EXPECT_LE(shift_px, most_error_px) << column << " " << row << " focal " << c.focal_px;
       const double range = glm::length(at - c.camera);
       EXPECT_NEAR(static_cast<double>(places.range_m[n]), range, 2e-6 * range);
-      if (error_px > most_error_px) return 1;
+      if (shift_px > most_error_px) return 1;
     }
   }
   return 1;

@@ -24,12 +24,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Posts so many rays apart have their rays in two vectors of them.
 constexpr float kMostStepOfTwoVectors = 1.99F;
 
-using Floats = hn::CappedTag<float, Fan::kPad>;
+using Floats = hn::CappedTag<float, RayFan::kPad>;
 using Ints = hn::RebindToSigned<Floats>;
 using FloatVec = hn::Vec<Floats>;
 using IntVec = hn::Vec<Ints>;
 
-void raise_kernel(const RingCrossing& c, Fan& fan) {
+void raise_kernel(const RingCrossing& c, RayFan& fan) {
   const Floats d;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -102,8 +102,8 @@ struct Sides {
 HWY_INLINE Sides sides_one_by_one(const float* horizon, IntVec ray) {
   const Floats d;
   const Ints di;
-  alignas(64) std::int32_t rays[Fan::kPad];
-  alignas(64) float pairs[2 * Fan::kPad];
+  alignas(64) std::int32_t rays[RayFan::kPad];
+  alignas(64) float pairs[2 * RayFan::kPad];
   hn::Store(ray, di, rays);
   for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
     std::memcpy(&pairs[2 * lane], horizon + rays[lane], 2 * sizeof(float));
@@ -128,7 +128,7 @@ HWY_INLINE Sides sides_of_two_vectors(const float* horizon, IntVec ray, int firs
   return {taken(horizon + first), taken(horizon + first + 1)};
 }
 
-int judge_kernel(const RingPosts& p, float doubt, Fan& fan) {
+int judge_kernel(const RingPosts& p, float doubt, RayFan& fan) {
   const Floats d;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -172,11 +172,11 @@ namespace vpe::map {
 HWY_EXPORT(raise_kernel);
 HWY_EXPORT(judge_kernel);
 
-void raise_horizons(const RingCrossing& crossing, Fan& fan) {
+void raise_horizons(const RingCrossing& crossing, RayFan& fan) {
   HWY_DYNAMIC_DISPATCH(raise_kernel)(crossing, fan);
 }
 
-int judge_posts(const RingPosts& posts, float doubt, Fan& fan) {
+int judge_posts(const RingPosts& posts, float doubt, RayFan& fan) {
   return HWY_DYNAMIC_DISPATCH(judge_kernel)(posts, doubt, fan);
 }
 

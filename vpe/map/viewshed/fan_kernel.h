@@ -12,7 +12,7 @@ namespace vpe::map {
 // of the one before it. A ring is a line of posts at a whole number of posts from the observer; along it posts
 // count from the observer's axis. Members have kPad entries more than there are rays or posts, so that vectors may reach
 // beyond their end. For one thread.
-struct Fan {
+struct RayFan {
   static constexpr int kPad = 32;
 
   // Of each ray:
@@ -41,7 +41,7 @@ struct RingCrossing {
 
 // Raises the horizons of rays by the edge between two posts that each crosses on its way from the ring before, if any,
 // and by the edge that it crosses on the ring.
-void raise_horizons(const RingCrossing& crossing, Fan& fan);
+void raise_horizons(const RingCrossing& crossing, RayFan& fan);
 
 // Describes the posts of a ring between rays.
 struct RingPosts {
@@ -57,6 +57,6 @@ struct RingPosts {
 // Interpolates the horizons at posts between those of the rays on both sides, as rises that targets need, and judges
 // targets by them. Finds posts in doubt: nearer to the mean of the horizons of their rays than `doubt` differences of
 // these. Returns the number of these posts.
-int judge_posts(const RingPosts& posts, float doubt, Fan& fan);
+int judge_posts(const RingPosts& posts, float doubt, RayFan& fan);
 
 }  // namespace vpe::map

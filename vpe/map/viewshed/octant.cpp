@@ -24,7 +24,7 @@ class Sweep {
  public:
   Sweep(const Octant& octant, const FanRays& rays, const OctantResults& results)
       : octant_(octant), rays_(rays), results_(results), count_(rays.last - rays.first + 1) {
-    const std::size_t size = static_cast<std::size_t>(count_) + 2 + Fan::kPad;
+    const std::size_t size = static_cast<std::size_t>(count_) + 2 + RayFan::kPad;
     for (std::vector<float>* member : {&fan_.slope, &fan_.slope_inverse, &fan_.ridge, &fan_.needed_m,
                                        &fan_.rises_m, &fan_.rises_before_m, &targets_m_})
       member->resize(size);
@@ -179,7 +179,7 @@ class Sweep {
     return horizon * static_cast<float>(posts.ring);
   }
 
-  // Returns the tangent of the edge that the line to a post crosses `near` lines beyond a ridge of Fan.
+  // Returns the tangent of the edge that the line to a post crosses `near` lines beyond a ridge of RayFan.
   float tangent_at(float ridge, int near, int ring, int post) const {
     const bool is_ring = ridge > 0;
     const int line = static_cast<int>(is_ring ? ridge : -ridge) + near;
@@ -229,7 +229,7 @@ class Sweep {
   const FanRays& rays_;
   const OctantResults& results_;
   int count_;
-  Fan fan_;
+  RayFan fan_;
   std::vector<float> targets_m_;
   RingBlock<float> rises_block_;
   RingBlock<float> targets_block_;

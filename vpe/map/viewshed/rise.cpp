@@ -80,7 +80,7 @@ void rises_kernel(const RiseRow& row, const float* heights_m, float added_m, int
   by_vectors(posts, first, heights_m, rises_m, [&](int at, const float* heights, float* found) HWY_ATTR {
     const RisePosts p = rise_posts(row, heights, at);
     const FloatVec height = hn::Add(p.height_m, hn::Set(d, added_m));
-    FloatVec rise = hn::Sub(height, hn::Set(d, row.eye_m));
+    FloatVec rise = hn::Sub(height, hn::Set(d, row.observer_m));
     if (row.radius_m > 0) {
       const FloatVec share = hn::Add(hn::Set(d, 1.0F), hn::Mul(height, hn::Set(d, row.curvature)));
       rise = hn::Sub(hn::Mul(hn::Div(rise, share), p.stretch), p.dip_m);
@@ -103,7 +103,7 @@ void heights_kernel(const RiseRow& row, const float* heights_m, int first, std::
     const FloatVec shortened = hn::Div(hn::Add(hn::LoadU(d, found), p.dip_m), p.stretch);
     const FloatVec share = hn::Sub(one, hn::Mul(shortened, curvature));
     const FloatVec over_eye = hn::Mul(shortened, hn::Add(one, hn::Mul(height, curvature)));
-    const FloatVec missing = hn::Div(hn::Add(hn::Sub(hn::Set(d, row.eye_m), height), over_eye), share);
+    const FloatVec missing = hn::Div(hn::Add(hn::Sub(hn::Set(d, row.observer_m), height), over_eye), share);
     const FloatVec needed = hn::IfThenElse(hn::Gt(share, zero), hn::Max(missing, zero), never);
     hn::StoreU(hn::IfThenElse(p.known, needed, unknown), d, found);
   });

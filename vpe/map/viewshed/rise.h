@@ -10,7 +10,7 @@ inline constexpr float kNoRise = -1e30F;
 
 // Describes an observer for whom rises are computed.
 struct RiseView {
-  double eye_m = 0;          // height of the eye above the sphere
+  double observer_m = 0;     // height of the eye above the sphere
   double radius_m = 0;       // of the sphere; infinity: a plane
   double spacing_m = 1;      // of posts
   double reach_squared = 0;  // square of the distance beyond which posts are unknown, in posts

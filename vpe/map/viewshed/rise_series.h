@@ -49,7 +49,7 @@ inline constexpr RiseSeries kRiseSine = without_pole(false);
 // Holds the numbers of a view and of a row that its posts share, as floats.
 struct RiseRow {
   RiseRow(const RiseView& view, int across)
-      : eye_m(static_cast<float>(view.eye_m)),
+      : observer_m(static_cast<float>(view.observer_m)),
         across_squared(static_cast<float>(across) * static_cast<float>(across)),
         reach_squared(static_cast<float>(view.reach_squared)) {
     if (std::isinf(view.radius_m)) return;
@@ -61,7 +61,7 @@ struct RiseRow {
     lowest_m = std::max(-kMostRiseHeight_m, radius_m * (kLeastCentreDistance - 1));
   }
 
-  float eye_m;
+  float observer_m;
   float across_squared;      // posts
   float reach_squared;       // posts
   float radius_m = 0;        // 0: a plane

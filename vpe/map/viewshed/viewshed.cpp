@@ -61,14 +61,14 @@ class ViewshedWork {
     const double reach = std::min(options.reach_m, quarter_m) / ground.spacing_m;
     view_.reach_squared = reach * reach;
     rings_ = static_cast<int>(std::min(reach, double{kMostPostsAcross}));
-    view_.eye_m = double{ground.at(options.column, options.row)} + options.observer_height_m;
+    view_.observer_m = double{ground.at(options.column, options.row)} + options.observer_height_m;
   }
 
   // Returns whether the observer's ground is known.
   bool has_ground() const {
     const double height_m = double{ground_.at(options_.column, options_.row)};
     return std::abs(height_m) <= kMostViewshedHeight_m &&
-           (std::isinf(options_.radius_m) || std::min(height_m, view_.eye_m) > -options_.radius_m);
+           (std::isinf(options_.radius_m) || std::min(height_m, view_.observer_m) > -options_.radius_m);
   }
 
   void fill_rises(double target_height_m) {
