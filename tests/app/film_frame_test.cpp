@@ -159,11 +159,12 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
     std::string other = info.choices.empty() ? "1" : std::string(info.choices.front());
     if (info.type == vpe::core::SettingType::kTable) other = "0:1";
     if (info.type == vpe::core::SettingType::kText) {
-      other = info.key == "palette"         ? "viridis"
-              : info.key == "sun"           ? "2026-11-20T12:00Z"
-              : info.key == "overlay.names" ? "/dev/null"
-              : info.key == "scene"         ? VPE_SOURCE_DIR "/scripts/scenes/gale.scene.toml"
-                                            : "Other";
+      other = info.key == "palette"          ? "viridis"
+              : info.key == "sun"            ? "2026-11-20T12:00Z"
+              : info.key == "overlay.names"  ? "/dev/null"
+              : info.key == "overlay.layers" ? "/dev/null"
+              : info.key == "scene"          ? VPE_SOURCE_DIR "/scripts/scenes/gale.scene.toml"
+                                             : "Other";
     }
     if (info.type == vpe::core::SettingType::kNumber && info.max < 1)
       other = vpe::base::format_number(info.max);
