@@ -20,21 +20,23 @@ struct DrapedRun {
   double distance_m = 0;              // of its middle from the camera
 };
 
+// Holds the share of its distance by which a place must lie behind the ground to be hidden.
+inline constexpr double kHiddenLineShare = 5e-4;
+
 // Calls `draw` with each run of all lines in and beside an image, in the order of the features. Places on a line are followed
 // until they are at most a pixel apart: between them the run is straight, so that it is off the line on the reference surface
 // by no more than the ground rises between two pixels. A place is hidden if all ground in the 3 x 3 pixels about it is nearer by
 // more than kHiddenLineShare of the distance and the image's own errors.
-inline constexpr double kHiddenLineShare = 5e-4;
 void drape_lines(const GroundFeatures& features, const VisibleTerrain& terrain,
                  const std::function<void(const DrapedRun&)>& draw);
 
-// Returns where the image shows a place on the ground: its position in the layer, its distance from the camera, and whether
-// ground hides it; nullopt behind the camera.
+// Holds where an image shows a place on the ground.
 struct DrapedPlace {
-  glm::dvec2 at_px;
-  double distance_m = 0;
-  bool is_hidden = false;
+  glm::dvec2 at_px;        // in the layer
+  double distance_m = 0;   // from the camera
+  bool is_hidden = false;  // by nearer ground
 };
+// Returns where the image shows a place; nullopt behind the camera.
 std::optional<DrapedPlace> drape(const VisibleTerrain& terrain, glm::dvec2 place_deg);
 
 }  // namespace vpe::overlay

@@ -34,8 +34,9 @@ map::MapLight light_of(const MapRequest& request, const paging::PlanetMeta& meta
 mars::RasterInfo raster_info(const MapRequest& request, const mars::MapCrs& crs, const map::MapGrid& grid,
                              const paging::PlanetMeta& meta);
 
-// Returns and reads what lies under pixels, for files beside unfinished strips.
+// Returns what lies under pixels as JSON, for files beside unfinished strips.
 nlohmann::json to_json(const map::MapGround& ground);
+// Returns what to_json() wrote. Throws nlohmann::json::exception for other texts.
 map::MapGround ground_from_json(const nlohmann::json& json);
 
 // Adds what lies under the pixels to the file's metadata.
