@@ -1,4 +1,4 @@
-// Which coordinate of a file is the latitude.
+// Selects which coordinate of a file is the latitude.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ struct FeatureReadOptions {
   AxisOrder axis_order = AxisOrder::by_contents;
   // Limits of the whole file. A feature without vertices counts as one.
   std::size_t most_vertices = 20'000'000;
-  // Of the file, of what a KMZ unpacks to, and of the texts of attributes, each.
+  // Limits the file, what a KMZ unpacks to, and the texts of attributes, each.
   std::size_t most_bytes = std::size_t{2} << 30;
 };
 

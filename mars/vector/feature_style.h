@@ -1,4 +1,4 @@
-// How a feature is drawn, by what its file says.
+// Describes how a feature is drawn, by what its file says.
 #pragma once
 
 #include <optional>
@@ -46,7 +46,7 @@ struct FeatureStyle {
 // marker-color, marker-size (small, medium, large: 6, 8 and 12 pixels; or a number of pixels). Colours there are #rgb
 // or #rrggbb; the # may be left out. Where `defaults` have no fill, the opacity of one is 0.6. Attributes without a value change nothing.
 //
-// Of style strings (OGR Feature Style Specification) these are read: PEN(c, w, p), BRUSH(fc), SYMBOL(c, s),
+// Reads of style strings (OGR Feature Style Specification): PEN(c, w, p), BRUSH(fc), SYMBOL(c, s),
 // LABEL(c, s, t), and id ogr-pen-1 and ogr-brush-1, which draw nothing. Other tools and parameters are left out.
 // Colours are #rrggbb or #rrggbbaa. Units are px, pt, mm, cm, in (96 pixels to the inch) and g, which is taken for
 // metres; a number without a unit is one of pixels, and in SYMBOL(s) and LABEL(s), as KML has it, a scale of the

@@ -1,4 +1,4 @@
-// Where a head is beside a panorama's place.
+// Computes where a head is beside a panorama's place.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What commands say about ground that they have sampled on a grid, and the files of lines that they write.
+// Reports what commands say about ground that they have sampled on a grid, and the files of lines that they write.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a map shows, and what its file says about it.
+// Holds what a map shows, and what its file says about it.
 #pragma once
 
 #include <nlohmann/json.hpp>

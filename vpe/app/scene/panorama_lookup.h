@@ -1,4 +1,4 @@
-// Where a panorama shows a direction, as objects/posters asks for it. Internal to vpe/app.
+// Computes where a panorama shows a direction, as objects/posters asks for it. Internal to vpe/app.
 #pragma once
 
 #include "objects/posters/placed_poster.h"
