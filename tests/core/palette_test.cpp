@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "tests/support/support.h"
@@ -214,12 +217,56 @@ TEST(Palette, AspectGoesRoundInEvenSteps) {
     const glm::dvec3 a = oklab(scale(11.25 * n));
     const glm::dvec3 b = oklab(scale(11.25 * (n + 1)));
     steps.push_back(std::sqrt(std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2) + std::pow(a.z - b.z, 2)));
-    EXPECT_NEAR(a.x, 0.75, 0.003);
-    EXPECT_NEAR(std::hypot(a.y, a.z), 0.125, 0.003);
-    EXPECT_NEAR(oklab(scale(11.25 * n + 5.6)).x, 0.75, 0.006);
+    const double angle_rad = 11.25 * n * std::numbers::pi / 180;
+    EXPECT_NEAR(a.x, 0.68 + 0.135 * std::cos(angle_rad), 0.003);
+    EXPECT_NEAR(std::hypot(a.y, a.z), 0.135 * std::abs(std::sin(angle_rad)), 0.003);
   }
   const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
   EXPECT_LT(*most / *least, 1.2);
+}
+
+// Simulates colour blindness by the matrices of Machado, Oliveira and Fernandes (2009), severity 1, on linear RGB.
+constexpr std::array<std::array<double, 9>, 3> kColourBlindness{
+    {{0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998},
+     {0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.011820, 0.042940, 0.968881},
+     {1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.303900}}};
+
+// Returns the CIE L*a*b* (D65) of a colour as such eyes see it.
+glm::dvec3 seen_lab(const glm::dvec3& rgb, const std::array<double, 9>& eyes) {
+  glm::dvec3 linear;
+  for (int n = 0; n < 3; ++n) {
+    const double c = rgb[n] / 255;
+    linear[n] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  }
+  glm::dvec3 seen;
+  for (int n = 0; n < 3; ++n) {
+    const auto row = eyes.begin() + 3 * n;
+    seen[n] = std::clamp(row[0] * linear.x + row[1] * linear.y + row[2] * linear.z, 0.0, 1.0);
+  }
+  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
+  const double x = f((0.4124564 * seen.x + 0.3575761 * seen.y + 0.1804375 * seen.z) / 0.95047);
+  const double y = f(0.2126729 * seen.x + 0.7151522 * seen.y + 0.0721750 * seen.z);
+  const double z = f((0.0193339 * seen.x + 0.1191920 * seen.y + 0.9503041 * seen.z) / 1.08883);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+// A difference of 2.3 is just noticed.
+TEST(Palette, TheUsualOnesTellATenthOfTheirRangeApartForColourBlindEyes) {
+  constexpr int kSteps = 200;
+  for (const Colour colour : {Colour::kElevation, Colour::kSlope, Colour::kAspect, Colour::kDifference}) {
+    const ColourScale scale = scale_of("auto", colour, 0, 1);
+    for (const auto& eyes : kColourBlindness) {
+      std::vector<glm::dvec3> seen;
+      for (int n = 0; n <= kSteps; ++n) seen.push_back(seen_lab(scale(n / double{kSteps}), eyes));
+      for (int a = 0; a <= kSteps; ++a) {
+        for (int b = a + kSteps / 10; b <= kSteps; ++b) {
+          if (colour == Colour::kAspect && b - a > kSteps - kSteps / 10) continue;  // a circle
+          EXPECT_GT(glm::length(seen[static_cast<std::size_t>(a)] - seen[static_cast<std::size_t>(b)]), 3.5)
+              << static_cast<int>(colour) << " " << a << " " << b;
+        }
+      }
+    }
+  }
 }
 
 TEST(Palette, DivergingIsLightestAtTheDatumAndEvenAboutIt) {
@@ -258,14 +305,14 @@ TEST(ColourScale, RangesSuitWhatIsShown) {
 
 TEST(ColourScale, ValuesStayWhereTheyAreUntilARangeStretchesThem) {
   const ColourScale own = scale_of("relief");
-  EXPECT_EQ(own(-8200), glm::dvec3(42, 26, 90));
-  EXPECT_EQ(own(0), glm::dvec3(186, 186, 108));
-  EXPECT_EQ(own(21500), glm::dvec3(250, 248, 244));
-  EXPECT_LT(furthest(own(750), glm::dvec3(196, 173, 98)), 1e-9);
+  EXPECT_EQ(own(-8200), glm::dvec3(34, 17, 85));
+  EXPECT_EQ(own(0), glm::dvec3(153, 153, 88));
+  EXPECT_EQ(own(21500), glm::dvec3(252, 251, 249));
+  EXPECT_LT(furthest(own(750), glm::dvec3(182, 157, 86.5)), 1e-9);
   const ColourScale wide = scale_of("relief", Colour::kElevation, 0, 29700);
-  EXPECT_EQ(wide(0), glm::dvec3(42, 26, 90));
-  EXPECT_LT(furthest(wide(8200), glm::dvec3(186, 186, 108)), 1e-9);
-  EXPECT_EQ(wide(29700), glm::dvec3(250, 248, 244));
+  EXPECT_EQ(wide(0), glm::dvec3(34, 17, 85));
+  EXPECT_LT(furthest(wide(8200), glm::dvec3(153, 153, 88)), 1e-9);
+  EXPECT_EQ(wide(29700), glm::dvec3(252, 251, 249));
 }
 
 TEST(ColourScale, AReversedRangeTurnsThePaletteRound) {

@@ -334,7 +334,7 @@ TEST(Settings, UnknownKeysNameNearOnes) {
   const std::string far = settings.set("flux-capacitor", "1");
   EXPECT_TRUE(holds(far, "the settings are mode, shading, colour, palette")) << far;
   EXPECT_FALSE(settings.set("", "").empty());
-  // The names of all keys, which two layers' keys have made longer, and a little of the text.
+  // The names of all keys, which the layers' keys have made longer, and a little of the text.
   EXPECT_LT(settings.set(std::string(1000000, 'x'), "1").size(), 1300u);
   EXPECT_EQ(settings, Settings());
   EXPECT_FALSE(settings.get("su").has_value());

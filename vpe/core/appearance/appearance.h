@@ -75,6 +75,8 @@ struct Appearance : HsvRamp {
   double image_low = 0;
   double image_high = 255;
   double image_gamma = 1;
+  // The layers of imagery that are shown (vpe/core/appearance/image_layers.h); "": as the planet file was built.
+  std::string image_layers;
   bool colourise = false;  // imagery keeps its brightness and takes hue and saturation from `colour`
   Light light = Light::kAuto;
   double exaggeration = 1;  // factor on elevations; larger: steeper ground and larger errors

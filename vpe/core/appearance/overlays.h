@@ -62,6 +62,7 @@ struct Overlays {
   // Paths of vector files with ';' between them, the lowest first; after each path may follow '@' and an opacity.
   std::string layers;
   HiddenLines hidden_lines = HiddenLines::kLeftOut;  // of layers
+  bool layers_legend = false;                        // what colours and patterns of layers stand for
   Inspect inspect = Inspect::kNone;
 
   bool operator==(const Overlays&) const = default;

@@ -61,22 +61,24 @@ constexpr Knot kBlackBody[] = {{0, 0, 0, 0}, {2, 230, 0, 0}, {4, 230, 230, 0}, {
 
 constexpr Knot kGrey[] = {{0, 0, 0, 0}, {1, 255, 255, 255}};
 
-// aspect: 32 even steps of hue, from 29 degrees, on the circle of OKLab (B. Ottosson, 2020) with lightness 0.75
-// and chroma 0.125, close to the largest that sRGB holds all round.
+// aspect: made for this program, on a circle of OKLab (B. Ottosson, 2020) of radius 0.135 about the grey of lightness 0.68: light
+// to the north, orange (hue 65 degrees) to the east, dark to the south, blue to the west. Lightness and blue against orange are
+// what colour-blind eyes tell apart.
 constexpr Knot kAspect[] = {
-    {0, 243, 142, 128},  {1, 241, 145, 111},  {2, 236, 150, 97},   {3, 230, 155, 84},   {4, 221, 161, 74},
-    {5, 210, 167, 69},   {6, 197, 174, 70},   {7, 182, 180, 77},   {8, 165, 185, 88},   {9, 147, 190, 102},
-    {10, 127, 194, 118}, {11, 106, 197, 135}, {12, 84, 199, 153},  {13, 60, 199, 170},  {14, 37, 199, 186},
-    {15, 22, 198, 202},  {16, 30, 195, 216},  {17, 51, 192, 229},  {18, 74, 187, 239},  {19, 96, 183, 246},
-    {20, 116, 177, 251}, {21, 135, 172, 253}, {22, 153, 166, 252}, {23, 170, 161, 249}, {24, 185, 156, 242},
-    {25, 198, 151, 233}, {26, 210, 147, 221}, {27, 221, 143, 208}, {28, 229, 141, 193}, {29, 236, 139, 178},
-    {30, 240, 139, 161}, {31, 243, 140, 144}, {32, 243, 142, 128}};
+    {0, 194, 194, 194},  {1, 206, 191, 176},  {2, 215, 185, 157},  {3, 221, 178, 136},  {4, 224, 169, 116},
+    {5, 225, 160, 95},   {6, 222, 151, 76},   {7, 216, 141, 58},   {8, 208, 133, 45},   {9, 199, 125, 38},
+    {10, 187, 119, 39},  {11, 175, 114, 47},  {12, 162, 111, 58},  {13, 149, 109, 70},  {14, 137, 109, 83},
+    {15, 124, 110, 97},  {16, 112, 112, 112}, {17, 100, 115, 128}, {18, 90, 119, 144},  {19, 80, 123, 160},
+    {20, 71, 129, 177},  {21, 64, 136, 192},  {22, 60, 143, 207},  {23, 61, 151, 219},  {24, 68, 159, 230},
+    {25, 79, 168, 237},  {26, 94, 176, 241},  {27, 111, 183, 242}, {28, 129, 189, 239}, {29, 147, 193, 233},
+    {30, 164, 195, 223}, {31, 180, 196, 210}, {32, 194, 194, 194}};
 
-// relief: made for this program, hypsometric, in metres.
-constexpr Knot kRelief[] = {{-8200, 42, 26, 90},    {-6000, 58, 60, 148},   {-4500, 62, 110, 168},
-                            {-3000, 84, 150, 150},  {-1500, 128, 172, 118}, {0, 186, 186, 108},
-                            {1500, 206, 160, 88},   {3500, 190, 116, 72},   {7000, 160, 84, 68},
-                            {12000, 204, 174, 160}, {21500, 250, 248, 244}};
+// relief: made for this program, hypsometric, in metres. Lightness rises all the way, and values a tenth of the range apart
+// differ for colour-blind eyes too.
+constexpr Knot kRelief[] = {{-8200, 34, 17, 85},    {-6000, 24, 53, 121},  {-4500, 17, 83, 134},
+                            {-3000, 39, 112, 137},  {-1500, 93, 136, 112}, {0, 153, 153, 88},
+                            {1500, 211, 161, 85},   {3500, 249, 178, 123}, {7000, 255, 202, 174},
+                            {12000, 255, 226, 209}, {21500, 252, 251, 249}};
 
 // mola: made for this program, in metres, with the order of colours that is familiar from maps of the Mars
 // Orbiter Laser Altimeter: purple and blue basins, green and yellow about the datum, red highlands, brown to

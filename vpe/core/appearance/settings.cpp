@@ -2,6 +2,7 @@
 
 #include "mars/geodesy/mars_time.h"
 #include "vpe/core/appearance/gazetteer.h"
+#include "vpe/core/appearance/image_layers.h"
 #include "vpe/core/appearance/layer_list.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/core/registry/former_names.h"
@@ -72,6 +73,11 @@ const KeyRegistry<SettingsValues>& registry() {
       {"image.high", Declare::number<&V::image_high>(0, 255), "", "value of the imagery that is shown white"},
       {"image.gamma", Declare::number<&V::image_gamma>(0.1, 10), "",
        "gamma of the imagery between image.low and image.high; larger: brighter"},
+      {"image.layers",
+       Declare::text<&V::image_layers>(
+           "names of the planet file's image layers with ';' between them, each with @OPACITY, low=, high=, gamma= or without",
+           image_layers_problem),
+       "", "image layers that are shown, the lowest first; none: the imagery as the planet file was built"},
       {"exaggeration", Declare::number<&V::exaggeration>(0.1, 100), "",
        "factor on every elevation, about the planet's sphere"},
       {"sun",
@@ -132,6 +138,8 @@ const KeyRegistry<SettingsValues>& registry() {
        Declare::choice<&V::hidden_lines>(
            {word("off", HiddenLines::kLeftOut), word("dashed", HiddenLines::kDashed)}),
        "", "parts of lines of layers that ground hides"},
+      {"overlay.layers.legend", Declare::toggle<&V::layers_legend>(), "",
+       "what the colours and patterns of layers stand for"},
       {"lod.tolerance", Declare::number<&V::lod_tolerance_px>(0, 1000), "px",
        "largest screen-space error that may be drawn; 0 draws the exact surface (backend ray: see rays.mode)"},
       {"lod.triangles", Declare::integer<&V::lod_triangles>(0, 1'000'000'000), "",
