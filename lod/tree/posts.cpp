@@ -4,6 +4,7 @@
 #include <bit>
 #include <glm/geometric.hpp>
 
+#include "lod/tree/facet.h"
 #include "vpe/base/mutation.h"
 
 namespace lod {
@@ -77,8 +78,8 @@ double post_spacing_m(int level, int intervals, double radius_m) {
   return radius_m * std::atan(mars::face_line((std::int64_t{1} << (grid_level - 1)) + 1, grid_level));
 }
 
-double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
-                      glm::dvec3* normal, double exaggeration) {
+Facet facet_at(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
+               double exaggeration) {
   u = std::clamp(u, lines.u.front(), lines.u.back());
   v = std::clamp(v, lines.v.front(), lines.v.back());
   const int i = interval_of(lines.u, u);
@@ -93,16 +94,30 @@ double surface_height(const Posts& posts, const GridLines& lines, double u, doub
   const double dv = c.v - a.v;
   const bool lower = (u - a.u) * dv >= (v - a.v) * du;
   const Vertex b = lower ? post(i + 1, j) : post(i, j + 1);
-  const double slope_u = (lower ? depth_difference(a, b) : depth_difference(b, c)) / du;
-  const double slope_v = (lower ? depth_difference(b, c) : depth_difference(a, b)) / dv;
-  if (normal != nullptr) {
-    // On the facet R w = n . (u, v, 1), hence n . P = R: n is its normal in the face's axes.
-    const double constant = a.length - a.deficit - slope_u * a.u - slope_v * a.v;
-    *normal = glm::normalize(mars::face_axes(posts.key.face).right * slope_u +
-                             mars::face_axes(posts.key.face).up * slope_v +
-                             mars::face_axes(posts.key.face).out * constant);
-  }
-  return height_at(a, u, v, slope_u * (u - a.u) + slope_v * (v - a.v), radius_m);
+  Facet facet{a.u, c.u, a.v, c.v, lower, a.length, a.deficit};
+  facet.slope_u = (lower ? depth_difference(a, b) : depth_difference(b, c)) / du;
+  facet.slope_v = (lower ? depth_difference(b, c) : depth_difference(a, b)) / dv;
+  return facet;
+}
+
+double Facet::height_m(double u, double v, double radius_m) const {
+  return height_at({u0, v0, length, deficit}, u, v, slope_u * (u - u0) + slope_v * (v - v0), radius_m);
+}
+
+glm::dvec3 Facet::normal(mars::Face face) const {
+  // On the facet R w = n . (u, v, 1), hence n . P = R: n is its normal in the face's axes.
+  const double constant = length - deficit - slope_u * u0 - slope_v * v0;
+  const mars::FaceAxes& axes = mars::face_axes(face);
+  return glm::normalize(axes.right * slope_u + axes.up * slope_v + axes.out * constant);
+}
+
+double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
+                      glm::dvec3* normal, double exaggeration) {
+  u = std::clamp(u, lines.u.front(), lines.u.back());
+  v = std::clamp(v, lines.v.front(), lines.v.back());
+  const Facet facet = facet_at(posts, lines, u, v, radius_m, exaggeration);
+  if (normal != nullptr) *normal = facet.normal(posts.key.face);
+  return facet.height_m(u, v, radius_m);
 }
 
 void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mars/sources/layered_image.h"
 #include "paging/build/source_content.h"
 #include "paging/build/source_heights.h"
 #include "vpe/base/number.h"
@@ -85,6 +86,15 @@ std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::I
   return tiles;
 }
 
+std::vector<std::vector<lod::TileKey>> plan_layers(const BuildOptions& options,
+                                                   const mars::ImageSource* image) {
+  std::vector<std::vector<lod::TileKey>> tiles;
+  const auto* layers = mars::layers_of(image);
+  if (layers == nullptr) return tiles;
+  for (const mars::ImageLayerSource& layer : *layers) tiles.push_back(plan_images(options, *layer.source));
+  return tiles;
+}
+
 BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& elevation) {
   return {lod::TileShape{options.tile_k}, options.radius_m, wanted_elevation(options, elevation)};
 }
@@ -111,6 +121,14 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
   meta.build_settings = build_settings(options);
   meta.arguments = options.arguments;
   if (image != nullptr) meta.image_sources = image->infos();
+  if (const auto* layers = mars::layers_of(image)) {
+    for (const mars::ImageLayerSource& layer : *layers) {
+      ImageLayer described;
+      described.name = layer.name;
+      described.source = layer.info;
+      meta.image_layers.push_back(std::move(described));
+    }
+  }
   for (auto* sources : {&meta.sources, &meta.image_sources})
     for (mars::SourceInfo& s : *sources) s.content = content_of(s);
   return meta;

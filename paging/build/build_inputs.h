@@ -47,6 +47,10 @@ double choose_quantum(const std::vector<mars::SourceInfo>& sources, double fines
 // Returns the wanted post spacing as a function of the place. Both arguments must outlive the function.
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source);
 
+// Returns the tiles of each layer of the image, coarsest first; empty if it has no layers. `image` may be null. A layer has
+// no tiles that the image does not have.
+std::vector<std::vector<lod::TileKey>> plan_layers(const BuildOptions& options, const mars::ImageSource* image);
+
 // Returns the image's tiles, coarsest first.
 std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::ImageSource& image);
 

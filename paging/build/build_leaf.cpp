@@ -5,6 +5,7 @@
 #include "paging/build/build_grid.h"
 #include "paging/build/nodata_fill.h"
 #include "paging/build/source_heights.h"
+#include "paging/planet/layer_tile.h"
 #include "paging/planet/tile_sources.h"
 #include "vpe/base/mutation.h"
 #include "vpe/core/appearance/nodata_pattern.h"
@@ -172,12 +173,34 @@ Node mesh_leaf(const MeshInputs& meshing, const SampledLeaf& leaf, TileStore& st
   return node;
 }
 
+namespace {
+
+struct SampledTexels {
+  std::vector<vpe::base::Rgb> colours;
+  std::vector<std::uint8_t> alpha;
+};
+
+SampledTexels sample_texels(const mars::ImageSource& image, const lod::TileKey& key, double radius_m) {
+  const std::vector<glm::dvec3> directions = post_directions(key, lod::grid_lines(key, kImageIntervals));
+  SampledTexels out{std::vector<vpe::base::Rgb>(directions.size()),
+                    std::vector<std::uint8_t>(directions.size())};
+  image.sample(directions, lod::post_spacing_m(key.level, kImageIntervals, radius_m), out.colours, out.alpha);
+  return out;
+}
+
+}  // namespace
+
+Bytes make_layer_tile(const mars::ImageSource& layer, const lod::TileKey& key, double radius_m, int quality) {
+  if (std::isinf(layer.spacing_in(lod::bounding_cap(key)))) {
+    constexpr std::size_t kCount = std::size_t{kImageIntervals + 1} * (kImageIntervals + 1);
+    return encode_layer_tile(std::vector<vpe::base::Rgb>(kCount), std::vector<std::uint8_t>(kCount), quality);
+  }
+  const SampledTexels texels = sample_texels(layer, key, radius_m);
+  return encode_layer_tile(texels.colours, texels.alpha, quality);
+}
+
 Bytes make_image_tile(const mars::ImageSource& image, const lod::TileKey& key, double radius_m, int quality) {
-  const lod::GridLines lines = lod::grid_lines(key, kImageIntervals);
-  const std::vector<glm::dvec3> directions = post_directions(key, lines);
-  std::vector<vpe::base::Rgb> colours(directions.size());
-  std::vector<std::uint8_t> alpha(directions.size());
-  image.sample(directions, lod::post_spacing_m(key.level, kImageIntervals, radius_m), colours, alpha);
+  auto [colours, alpha] = sample_texels(image, key, radius_m);
   for (std::size_t n = 0; n < colours.size(); ++n) {
     if (alpha[n] != 0) continue;
     colours[n] = {vpe::core::kMissingImagery, vpe::core::kMissingImagery, vpe::core::kMissingImagery};

@@ -110,6 +110,8 @@ void nest_errors(Nodes& nodes, std::span<const lod::TileKey> inner);
 
 // Samples an image tile and returns it as JPEG. Nodata texels are grey.
 Bytes make_image_tile(const mars::ImageSource& image, const lod::TileKey& key, double radius_m, int quality);
+// Samples a tile of an image layer (mars::ImageLayerSource) and packs it (layer_tile.h).
+Bytes make_layer_tile(const mars::ImageSource& layer, const lod::TileKey& key, double radius_m, int quality);
 
 // Convert a Node to its row and back, except lowest_m.
 NodeRow to_row(const lod::TileKey& key, const Node& node);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <set>
 
+#include "mars/sources/layered_image.h"
 #include "paging/build/build_inputs.h"
 #include "paging/build/build_resampling.h"
 #include "paging/build/build_steps.h"
@@ -23,6 +24,7 @@ namespace paging {
 namespace {
 
 const std::set<lod::TileKey> kNoTiles;
+constexpr double kImageShare = 0.06;  // of the time of a build
 
 // Runs the stages of a build in their order; each skips what an earlier build has finished.
 class Build {
@@ -37,6 +39,7 @@ class Build {
         plan_(std::move(plan)),
         shard_(shard_plan(plan_, options.shard)),
         images_(std::move(images)),
+        layers_(plan_layers(options, image)),
         patch_(std::move(patch)),
         writer_(options.output,
                 build_fingerprint(options, meta) + (patch_ ? patch_line(patch_->identity) : std::string()),
@@ -64,6 +67,7 @@ class Build {
     build_inner_tiles(stored);
     measure();
     build_images();
+    build_layers();
     return finish();
   }
 
@@ -173,7 +177,7 @@ class Build {
     std::vector<lod::TileKey> open;
     std::copy_if(images.begin(), images.end(), std::back_inserter(open),
                  [&](const lod::TileKey& key) { return !stored.contains(lod::pack(key)); });
-    begin("image", images.size(), open.size(), 0.06);
+    begin("image", images.size(), open.size(), layers_.empty() ? kImageShare : kImageShare / 2);
     vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
       writer_.put_image(open[n], make_image_tile(*image_, open[n], meta_.radius_m, options_.image_quality));
       stages_.advance();
@@ -181,6 +185,36 @@ class Build {
     for (const lod::TileKey& key : images)
       meta_.finest_image_level = std::max(meta_.finest_image_level, key.level);
     meta_.image_tiles = static_cast<std::int64_t>(images.size());
+  }
+
+  // Stage 5 makes the pyramids of the layers of the image.
+  void build_layers() {
+    if (layers_.empty()) return;
+    writer_.begin_layers();
+    const std::set<LayerTileKey> stored = writer_.layer_keys();
+    struct Open {
+      const mars::ImageSource* source = nullptr;
+      lod::TileKey tile;
+      LayerTileKey key;
+    };
+    std::vector<Open> open;
+    std::size_t total = 0;
+    const std::vector<mars::ImageLayerSource>& sources = *mars::layers_of(image_);
+    for (std::size_t n = 0; n < layers_.size(); ++n) {
+      const auto count = static_cast<std::int64_t>(layers_[n].size());
+      for (std::int64_t k = options_.shard.begin(count); k < options_.shard.end(count); ++k, ++total) {
+        const lod::TileKey& tile = layers_[n][static_cast<std::size_t>(k)];
+        const LayerTileKey key{static_cast<std::int64_t>(n), lod::pack(tile)};
+        if (!stored.contains(key)) open.push_back({sources[n].source.get(), tile, key});
+      }
+    }
+    begin("image layers", total, open.size(), kImageShare / 2);
+    vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
+      writer_.put_layer_tile(
+          open[n].key, make_layer_tile(*open[n].source, open[n].tile, meta_.radius_m, options_.image_quality));
+      stages_.advance();
+    });
+    writer_.count_layers(meta_.image_layers);
   }
 
   BuildSummary finish() {
@@ -198,7 +232,7 @@ class Build {
     }
     writer_.replace_nodes(measured);
 
-    // Stage 5 measures the reference surface against the sources' own posts.
+    // Stage 6 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
     ResamplingReport resampling = measure_made_tiles();
     check_files(meta_.sources);
@@ -266,6 +300,7 @@ class Build {
   BuildPlan plan_;
   ShardPlan shard_;
   std::vector<lod::TileKey> images_;
+  std::vector<std::vector<lod::TileKey>> layers_;  // by layer
   std::optional<PatchStart> patch_;
   PlanetWriter writer_;
   Stages stages_;
@@ -307,7 +342,7 @@ BuildSummary patch_planet(const BuildOptions& options, const PatchedPlanet& patc
                       finished.with_nodata.empty() ? std::optional(finished.meta.fill_m) : std::nullopt);
   if (!plan) plan = plan_tiles(options, elevation);
   std::vector<lod::TileKey> images = image_tiles(options, image);
-  PatchStart patch = plan_patch(finished, patched, meta, *plan, images);
+  PatchStart patch = plan_patch(finished, patched, meta, *plan, {images, plan_layers(options, image)});
   return Build(options, elevation, image, meta, std::move(*plan), std::move(images), std::move(patch), progress)
       .run();
 }

@@ -38,6 +38,10 @@ BuildEstimate estimate_build(const BuildOptions& options, const BuildPlan& plan,
   if (image != nullptr) {
     const auto count = static_cast<std::int64_t>(plan_images(options, *image).size());
     out.image_tiles = options.shard.end(count) - options.shard.begin(count);
+    for (const auto& layer : plan_layers(options, image)) {
+      const auto own = static_cast<std::int64_t>(layer.size());
+      out.layer_tiles += options.shard.end(own) - options.shard.begin(own);
+    }
   }
   out.posts = out.leaf_tiles * tile.post_count();
   int coarsest = lod::kMaxLevel;
@@ -46,7 +50,8 @@ BuildEstimate estimate_build(const BuildOptions& options, const BuildPlan& plan,
   out.largest_sagitta_m = facet_sagitta_m(out.coarsest_spacing_m, options.radius_m);
   const auto leaf_posts = static_cast<double>(out.posts);
   const auto inner_posts = static_cast<double>(out.inner_tiles * tile.post_count());
-  const double texels = static_cast<double>(out.image_tiles) * (kImageIntervals + 1) * (kImageIntervals + 1);
+  const double texels =
+      static_cast<double>(out.image_tiles + out.layer_tiles) * (kImageIntervals + 1) * (kImageIntervals + 1);
   const auto made_up = [](const std::vector<mars::SourceInfo>& infos) {
     return std::any_of(infos.begin(), infos.end(), [](const mars::SourceInfo& s) { return s.illustration; });
   };

@@ -9,6 +9,7 @@ struct BuildEstimate {
   std::int64_t leaf_tiles = 0;   // exact, from the plan
   std::int64_t inner_tiles = 0;  // exact
   std::int64_t image_tiles = 0;  // exact
+  std::int64_t layer_tiles = 0;  // exact, of all image layers
   std::int64_t posts = 0;
   std::int64_t bytes = 0;         // of the finished file
   double processor_s = 0;         // of all threads together

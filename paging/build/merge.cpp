@@ -87,6 +87,7 @@ class Merge {
   BuildSummary run() {
     copy_tiles();
     copy_images();
+    copy_layers();
     build_shared_ancestors();
     return finish();
   }
@@ -147,6 +148,20 @@ class Merge {
         stages_.advance();
       }
     }
+  }
+
+  void copy_layers() {
+    if (meta_.image_layers.empty()) return;
+    writer_.begin_layers();
+    const std::set<LayerTileKey> stored = writer_.layer_keys();
+    stages_.add_kept(static_cast<std::int64_t>(stored.size()));
+    for (const auto& shard : shards_) {
+      for (const LayerTileKey& key : shard->layer_keys()) {
+        if (!stored.contains(key)) writer_.put_layer_tile(key, shard->layer_tile(key));
+        stages_.report_again();
+      }
+    }
+    writer_.count_layers(meta_.image_layers);
   }
 
   // Stage 2 makes the inner tiles above several shards, deepest first.

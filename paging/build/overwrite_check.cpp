@@ -34,6 +34,12 @@ std::string names_of(const std::vector<mars::SourceInfo>& sources) {
   return text.empty() ? "none" : text;
 }
 
+std::string names_of(const std::vector<ImageLayer>& layers) {
+  std::string text;
+  for (const ImageLayer& layer : layers) text += (text.empty() ? "" : ", ") + layer.name;
+  return text.empty() ? "none" : text;
+}
+
 void compare_sources(const char* what, const std::vector<mars::SourceInfo>& old,
                      const std::vector<mars::SourceInfo>& now, Texts& texts) {
   const auto same_name = [](const auto& a, const auto& b) { return file_name(a) == file_name(b); };
@@ -87,6 +93,7 @@ Texts compare_content(const PlanetMeta& meta, const Database& db, const PlannedC
   compare("shape", meta.shape, now.shape, texts);
   compare_sources("elevation sources", meta.sources, now.sources, texts);
   compare_sources("image sources", meta.image_sources, now.image_sources, texts);
+  compare("image layers", names_of(meta.image_layers), names_of(now.image_layers), texts);
   if (texts.empty()) {
     compare("height step in metres", meta.quantum_m, now.quantum_m, texts);
     compare("mean height in metres", meta.fill_m, now.fill_m, texts);

@@ -135,6 +135,18 @@ PartialPlanetFile continue_partial_file(const std::string& path, const std::stri
   }
 }
 
+// Removes tiles of layers that the patch drops, and gives those that stay their new numbers. These are not less than the old
+// ones, so the highest goes first.
+void take_layers(Database& db, const PatchStart& patch) {
+  Statement remove(db, "DELETE FROM image_layer WHERE layer = ? AND key = ?");
+  for (const LayerTileKey& key : patch.dropped_layer_tiles) remove.bind(1, key.layer).bind(2, key.key).step();
+  Statement renumber(db, "UPDATE image_layer SET layer = ? WHERE layer = ?");
+  for (std::size_t n = patch.layer_numbers.size(); n-- > 0;) {
+    if (patch.layer_numbers[n] != static_cast<int>(n))
+      renumber.bind(1, std::int64_t{patch.layer_numbers[n]}).bind(2, static_cast<std::int64_t>(n)).step();
+  }
+}
+
 // Makes the partial file a copy of a finished planet file, without what the patch drops.
 std::unique_ptr<Database> copy_finished(const std::string& path, const PatchStart& patch) {
   std::error_code error;
@@ -157,6 +169,7 @@ std::unique_ptr<Database> copy_finished(const std::string& path, const PatchStar
   }
   Statement remove_image(*db, "DELETE FROM image WHERE key = ?");
   for (const std::int64_t key : patch.dropped_images) remove_image.bind(1, key).step();
+  if (has_table(*db, "image_layer")) take_layers(*db, patch);
   db->execute("DELETE FROM meta");
   return db;
 }
@@ -175,6 +188,8 @@ bool is_intact(Database& db) {
         "SELECT key, 0, checksum, data FROM image", "SELECT number, 0, checksum, data FROM note"}) {
     if (!rows_are_intact(db, sql)) return false;
   }
+  if (has_table(db, "image_layer") && !rows_are_intact(db, "SELECT key, 0, checksum, data FROM image_layer"))
+    return false;
   std::vector<NodeRow> nodes;
   if (read_nodes(db, nodes)) return false;
   // A finest tile's last variant is its full grid, without a mesh.

@@ -71,18 +71,53 @@ std::set<std::int64_t> keys_of(const Database& db, const char* table) {
   return keys;
 }
 
+std::set<LayerTileKey> layer_tiles_of(const Database& db) {
+  std::set<LayerTileKey> keys;
+  if (!has_table(db, "image_layer")) return keys;
+  Statement rows(db, "SELECT layer, key FROM image_layer");
+  while (rows.step()) keys.insert({rows.integer(0), rows.integer(1)});
+  return keys;
+}
+
+// Sets which tiles of the file's layers stay, and under which numbers.
+void plan_layer_tiles(const FinishedPlanet& finished, const PatchedPlanet& patched, const PlanetMeta& meta,
+                      const std::vector<std::vector<lod::TileKey>>& layers, PatchStart& start) {
+  const std::vector<ImageLayer>& before = finished.meta.image_layers;
+  auto at = meta.image_layers.begin();
+  for (const ImageLayer& layer : before) {
+    at = std::find_if(at, meta.image_layers.end(), [&](const ImageLayer& l) { return l.name == layer.name; });
+    if (at == meta.image_layers.end())
+      refuse(finished.path,
+             "its image layer '" + layer.name + "' has another name or place now; build the planet again");
+    start.layer_numbers.push_back(static_cast<int>(at++ - meta.image_layers.begin()));
+  }
+  std::set<LayerTileKey> kept;
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    for (const lod::TileKey& key : layers[static_cast<std::size_t>(start.layer_numbers[n])]) {
+      if (!patched.image_changes(surroundings(key, kImageIntervals)))
+        kept.insert({static_cast<std::int64_t>(n), lod::pack(key)});
+    }
+  }
+  for (const LayerTileKey& key : finished.layer_tiles)
+    if (!kept.contains(key)) start.dropped_layer_tiles.push_back(key);
+}
+
 }  // namespace
 
 FinishedPlanet read_finished(const std::string& path) {
   const Database db = open_planet_database(path);
-  FinishedPlanet finished{
-      path, from_rows(read_meta_rows(db), path), {}, keys_of(db, "missing"), keys_of(db, "image")};
+  FinishedPlanet finished{path,
+                          from_rows(read_meta_rows(db), path),
+                          {},
+                          keys_of(db, "missing"),
+                          keys_of(db, "image"),
+                          layer_tiles_of(db)};
   if (read_nodes(db, finished.rows)) refuse(path, "its tile index is damaged; build the planet again");
   return finished;
 }
 
 PatchStart plan_patch(const FinishedPlanet& finished, const PatchedPlanet& patched, const PlanetMeta& meta,
-                      const BuildPlan& plan, const std::vector<lod::TileKey>& images) {
+                      const BuildPlan& plan, const PlannedImages& images) {
   const PlanetMeta& before = finished.meta;
   require_equal_planets(finished.path, before, meta);
   PatchStart start{
@@ -97,10 +132,11 @@ PatchStart plan_patch(const FinishedPlanet& finished, const PatchedPlanet& patch
 
   std::set<std::int64_t> images_now;
   numbers_now(finished.path, before.image_sources, meta.image_sources);
-  for (const lod::TileKey& key : images)
+  for (const lod::TileKey& key : images.composed)
     if (!patched.image_changes(surroundings(key, kImageIntervals))) images_now.insert(lod::pack(key));
   for (const std::int64_t key : finished.images)
     if (!images_now.contains(key)) start.dropped_images.push_back(key);
+  plan_layer_tiles(finished, patched, meta, images.layers, start);
   return start;
 }
 

@@ -3,9 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
+
+#include "paging/planet/planet_database.h"
 
 #ifndef VPE_VERSION
 #define VPE_VERSION "0"
@@ -62,6 +65,7 @@ struct PlanetWriter::Statements {
   Statement read_heights;
   Statement read_nodata;
   Statement read_mesh;
+  std::optional<Statement> layer;  // once there are layers
 };
 
 PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s,
@@ -179,6 +183,45 @@ void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
 
 void PlanetWriter::put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
   write([&] { put(sql_->image, lod::pack(key), packed); });
+}
+
+// Nothing is lost with the empty table, so that it alone is no work to keep.
+void PlanetWriter::begin_layers() {
+  const std::lock_guard lock(mutex_);
+  if (!has_table(*partial_.db, "image_layer")) partial_.db->execute(kLayerSchema);
+  sql_->layer.emplace(*partial_.db, "INSERT INTO image_layer VALUES(NULL, ?, ?, ?, ?)");
+}
+
+void PlanetWriter::put_layer_tile(const LayerTileKey& key, std::span<const std::uint8_t> packed) {
+  write([&] {
+    sql_->layer->bind(1, key.layer).bind(2, key.key).bind(3, checksum(key.key, packed)).bind(4, packed);
+    sql_->layer->step();
+  });
+}
+
+std::set<LayerTileKey> PlanetWriter::layer_keys() {
+  const std::lock_guard lock(mutex_);
+  std::set<LayerTileKey> keys;
+  if (!has_table(*partial_.db, "image_layer")) return keys;
+  Statement rows(*partial_.db, "SELECT layer, key FROM image_layer");
+  while (rows.step()) keys.insert({rows.integer(0), rows.integer(1)});
+  return keys;
+}
+
+void PlanetWriter::count_layers(std::vector<ImageLayer>& layers) {
+  const std::lock_guard lock(mutex_);
+  for (ImageLayer& layer : layers) {
+    layer.finest_level = -1;
+    layer.tiles = layer.bytes = 0;
+  }
+  if (layers.empty()) return;
+  Statement rows(*partial_.db, "SELECT layer, key >> 54 & 31, length(data) FROM image_layer");
+  while (rows.step()) {
+    ImageLayer& layer = layers.at(static_cast<std::size_t>(rows.integer(0)));
+    layer.finest_level = std::max(layer.finest_level, static_cast<int>(rows.integer(1)));
+    ++layer.tiles;
+    layer.bytes += rows.integer(2);
+  }
 }
 
 void PlanetWriter::put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed) {

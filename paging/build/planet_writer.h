@@ -54,10 +54,16 @@ class PlanetWriter : public TileStore {
   std::set<std::int64_t> image_keys();
   std::map<std::int64_t, Bytes> checkpoints();
   std::vector<LevelSummary> levels(std::size_t posts);  // as summarize_levels()
+  std::set<LayerTileKey> layer_keys();
+  // Sets level, number and bytes of the tiles of each layer.
+  void count_layers(std::vector<ImageLayer>& layers);
 
   // Store a tile or image tile, whole or not at all.
   void put_tile(const NodeRow& row, const TilePayload& payload) override;
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
+  // Stores a tile of an image layer. begin_layers() makes the table, if it is not there yet.
+  void begin_layers();
+  void put_layer_tile(const LayerTileKey& key, std::span<const std::uint8_t> packed);
   // Stores an intermediate result by number; replaces an earlier one. publish() drops checkpoints, except that
   // a shard keeps those with numbers below 0.
   void put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed);

@@ -22,6 +22,7 @@ std::optional<BuildSummary> finished_shard(const BuildOptions& options, const Pl
     summary.posts = summary.meta.leaf_tiles * summary.meta.tile.post_count();
     summary.mesh_triangles = db.integer("SELECT sum(triangles) FROM variant");
     summary.kept = summary.meta.tiles + summary.meta.image_tiles;
+    for (const ImageLayer& layer : summary.meta.image_layers) summary.kept += layer.tiles;
     summary.is_kept_whole = true;
     return summary;
   } catch (const PlanetError&) {
@@ -56,6 +57,10 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
       origin_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM origin WHERE key = ?");
     mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
     image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
+    if (!meta_.image_layers.empty()) {
+      layer_ = std::make_unique<Statement>(
+          *db_, "SELECT checksum, data FROM image_layer WHERE layer = ? AND key = ?");
+    }
     if (content_identity(*db_) != meta_.identity) damaged("its rows differ from those that were written");
   } catch (const DatabaseError& e) {
     throw PlanetError(std::string(e.what()) + "; not a part of a planet, or damaged: build it again");
@@ -140,6 +145,23 @@ std::vector<std::int64_t> ShardFile::image_keys() const {
   Statement rows(*db_, "SELECT key FROM image ORDER BY key");
   while (rows.step()) keys.push_back(rows.integer(0));
   return keys;
+}
+
+std::vector<LayerTileKey> ShardFile::layer_keys() const {
+  std::vector<LayerTileKey> keys;
+  if (meta_.image_layers.empty()) return keys;
+  Statement rows(*db_, "SELECT layer, key FROM image_layer ORDER BY layer, key");
+  while (rows.step()) keys.push_back({rows.integer(0), rows.integer(1)});
+  for (const LayerTileKey& at : keys) {
+    if (at.layer < 0 || at.layer >= static_cast<std::int64_t>(meta_.image_layers.size()) ||
+        !lod::unpack(at.key))
+      damaged("a tile of an image layer that does not exist");
+  }
+  return keys;
+}
+
+Bytes ShardFile::layer_tile(const LayerTileKey& at) {
+  return verified(layer_->bind(1, at.layer).bind(2, at.key), at.key, at.key, "image layer");
 }
 
 Bytes ShardFile::image(std::int64_t key) { return verified(image_->bind(1, key), key, key, "image"); }

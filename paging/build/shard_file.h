@@ -41,6 +41,8 @@ class ShardFile {
   std::vector<TileResampling> resampling() const;
   std::vector<std::int64_t> image_keys() const;
   Bytes image(std::int64_t key);
+  std::vector<LayerTileKey> layer_keys() const;
+  Bytes layer_tile(const LayerTileKey& at);
 
  private:
   Bytes verified(Statement& statement, std::int64_t key, std::int64_t seed, const char* what) const;
@@ -55,6 +57,7 @@ class ShardFile {
   std::unique_ptr<Statement> origin_;  // null in shards of format 1.2
   std::unique_ptr<Statement> mesh_;
   std::unique_ptr<Statement> image_;
+  std::unique_ptr<Statement> layer_;  // null without image layers
 };
 
 }  // namespace paging

@@ -4,6 +4,7 @@
 
 #include "paging/build/shard_file.h"
 #include "paging/planet/codec.h"
+#include "paging/planet/layer_tile.h"
 #include "paging/planet/planet_database.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/core/image/image.h"
@@ -47,6 +48,25 @@ void check_shard_image(ShardFile& shard, std::int64_t key, VerifyReport& report)
   ++report.images;
 }
 
+void check_shard_layers(ShardFile& shard, VerifyReport& report) {
+  std::vector<ImageLayer> found = shard.meta().image_layers;
+  for (ImageLayer& layer : found) layer.tiles = layer.bytes = 0;
+  for (const LayerTileKey& at : shard.layer_keys()) {
+    ImageLayer& layer = found[static_cast<std::size_t>(at.layer)];
+    ++layer.tiles;
+    try {
+      const Bytes packed = shard.layer_tile(at);
+      layer.bytes += static_cast<std::int64_t>(packed.size());
+      decode_layer_tile(packed);
+      ++report.images;
+    } catch (const std::runtime_error& e) {  // PlanetError, CodecError, ImageError
+      report.problems.push_back({lod::to_string(*lod::unpack(at.key)), e.what()});
+    }
+  }
+  if (report.problems.empty() && found != shard.meta().image_layers)
+    report.problems.push_back({"image_layer", "rows differ from what meta 'image_layers' states"});
+}
+
 std::string name_of_row(std::int64_t key) {
   const auto tile = lod::unpack(key);
   return tile ? lod::to_string(*tile) : "row " + std::to_string(key);
@@ -75,6 +95,7 @@ VerifyReport verify_shard(const std::string& path, const VerifyProgress& progres
     }
     if (progress) progress(static_cast<double>(n + 1) / static_cast<double>(total));
   }
+  check_shard_layers(shard, report);
   return report;
 }
 

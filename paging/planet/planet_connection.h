@@ -32,12 +32,15 @@ struct PlanetFile::Connection {
                          "SELECT source, posts, max_m, rms_m, checksum FROM resampling WHERE key = ? "
                          "ORDER BY source");
     }
+    if (has_table(db, "image_layer"))
+      layer.emplace(db, "SELECT checksum, data FROM image_layer WHERE layer = ? AND key = ?");
   }
 
   void reset() {
     for (Statement* statement : {&heights, &nodata, &node, &mesh, &image}) statement->reset();
     if (origin) origin->reset();
     if (resampling) resampling->reset();
+    if (layer) layer->reset();
   }
 
   // Returns false if the file was written to since the connection was opened. Pages that SQLite keeps may then
@@ -56,6 +59,7 @@ struct PlanetFile::Connection {
   Statement image;
   std::optional<Statement> origin;  // absent before format 1.3, as is the next one
   std::optional<Statement> resampling;
+  std::optional<Statement> layer;  // of files with image layers
 };
 
 }  // namespace paging

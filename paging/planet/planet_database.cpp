@@ -14,7 +14,7 @@ constexpr std::size_t kMaxMetaRows = 10'000;
 
 constexpr const char* kNamesOfTheFormat =
     "('meta', 'node', 'variant', 'posts_error', 'heights', 'missing', 'origin', 'resampling', 'mesh', 'image', "
-    "'recipe', 'note')";
+    "'image_layer', 'recipe', 'note')";
 
 [[noreturn]] void refuse_schema(const Database& db, const std::string& what) {
   throw PlanetError(db.path() + ": damaged or forged: " + what + "; build the planet file again");

@@ -32,7 +32,8 @@ PlanetFile::PlanetFile(const std::string& path, BeforeRead before_read)
       before_read_(std::move(before_read)),
       version_(next_version()),
       connections_([this] { return std::make_unique<Connection>(*this); },
-                   {.reset = [](Connection& connection) { connection.reset(); }}) {
+                   {.reset = [](Connection& connection) { connection.reset(); }}),
+      ground_version_(version_) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw PlanetError(path + ": no such planet file; make one with 'vpe build DEM -o " + path + "'");
@@ -62,7 +63,7 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile>
       before_read_(base.before_read_),
       meta_(base.meta_),
       meta_checksum_(base.meta_checksum_),
-      tree_(std::make_unique<lod::TileTree>(*base.tree_)),
+      tree_(base.tree_),
       image_keys_(base.image_keys_),
       mask_keys_(base.mask_keys_),
       nodata_keys_(base.nodata_keys_),
@@ -71,7 +72,12 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile>
       overlay_(base.overlay_),
       connections_([this] { return std::make_unique<Connection>(*this); }),
       earlier_(std::move(earlier)),
-      compared_version_(version_) {}
+      compared_version_(version_),
+      layer_keys_(base.layer_keys_),
+      shown_layers_(base.shown_layers_),
+      composed_keys_(base.composed_keys_),
+      ground_version_(version_),
+      images_version_(base.images_version_) {}
 
 std::shared_ptr<const PlanetFile> PlanetFile::compared_with(std::shared_ptr<const PlanetFile> earlier) const {
   require_comparable(*earlier, *this);
@@ -124,8 +130,8 @@ void PlanetFile::read_index(const Database& db) {
                  " tiles are in the index");
   }
   try {
-    tree_ =
-        std::make_unique<lod::TileTree>(std::move(tiles), meta_.tile, meta_.radius_m, meta_.lowest_radius_m);
+    tree_ = std::make_shared<const lod::TileTree>(std::move(tiles), meta_.tile, meta_.radius_m,
+                                                  meta_.lowest_radius_m);
   } catch (const std::runtime_error& e) {
     throw damage(e.what());
   }
@@ -142,6 +148,7 @@ void PlanetFile::read_index(const Database& db) {
     mask_keys_.push_back(masks.integer(0));
   }
   set_nodata();
+  read_layer_keys(db);
 }
 
 void PlanetFile::set_nodata() {
@@ -162,14 +169,14 @@ bool PlanetFile::has_nodata(const lod::TileKey& key) const {
 std::optional<lod::TileKey> PlanetFile::image_key(const lod::TileKey& key) const {
   for (int level = std::min(key.level, meta_.finest_image_level); level >= 0; --level) {
     const lod::TileKey candidate = lod::ancestor(key, level);
-    if (std::binary_search(image_keys_.begin(), image_keys_.end(), lod::pack(candidate))) return candidate;
+    if (std::ranges::binary_search(shown_image_keys(), lod::pack(candidate))) return candidate;
   }
   return std::nullopt;
 }
 
 std::vector<lod::TileKey> PlanetFile::image_keys() const {
   std::vector<lod::TileKey> keys;
-  for (const std::int64_t row : image_keys_) {
+  for (const std::int64_t row : shown_image_keys()) {
     if (const auto key = lod::unpack(row)) keys.push_back(*key);
   }
   return keys;

@@ -2,6 +2,7 @@
 // tables.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "paging/planet/tile_sources.h"
 #include "paging/planet/tile_version.h"
 #include "vpe/base/object_pool.h"
+#include "vpe/core/appearance/image_layers.h"
 
 namespace paging {
 
@@ -85,19 +87,37 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   // of both are equal.
   std::uint64_t compared_version() const { return compared_version_; }
 
+  // Returns this planet with imagery composed of some of the file's layers (PlanetMeta::image_layers), the lowest first, in
+  // place of the imagery as it was built; an empty list: with that imagery. image_key() and image() follow. Coarser layers
+  // are interpolated between their texels. Ground that no layer covers is grey, as where imagery has no data. Heights and
+  // meshes are the same, and so are the connections. Patches that change images do not change layers.
+  //
+  // `former` is the planet that was shown before; null: this planet. If it shows the same layers of the same file, image
+  // tiles keep their numbers (version()). Throws PlanetError, which names the layers that there are, for one that the file
+  // does not have.
+  std::shared_ptr<const PlanetFile> with_images(
+      std::vector<vpe::core::ImageLayerLook> layers,
+      const std::shared_ptr<const PlanetFile>& former = nullptr) const;
+  // Returns the layers that the imagery is composed of; empty: it is that of the build.
+  const std::vector<vpe::core::ImageLayerLook>& shown_layers() const { return shown_layers_; }
+  // Returns true if both read the same opened file, whatever lies over it.
+  bool is_same_file(const PlanetFile& other) const { return &file() == &other.file(); }
+
   // Returns a number that no other planet of this process has, and that is larger than that of the planet under it.
   std::uint64_t version() const { return version_; }
   // Returns the number of the last planet with which a page of the tile changed, among this one and those before it: its
   // `former`, or else the planet under it, and so on. Pages of one tile and one number are equal. For kImage, `key` must be
   // that of an image tile.
   std::uint64_t version(const lod::TileKey& key, MadeOf made_of = MadeOf::kTile) const {
-    return overlay_ == nullptr ? version_ : overlay_version(key, made_of);
+    const std::uint64_t made = overlay_ == nullptr ? ground_version_ : overlay_version(key, made_of);
+    const bool shows_images = made_of == MadeOf::kImage || made_of == MadeOf::kArea;
+    return shows_images ? std::max(made, images_version_) : made;
   }
   // Returns the number of the last planet whose patch may have changed which of the tile's posts the sun shines on,
   // wherever the sun is: ground hides the sun from posts as far away as both can rise above the horizon. With another
   // exaggeration than 1, any patch counts.
   std::uint64_t shadow_version(const lod::TileKey& key, double exaggeration) const {
-    return overlay_ == nullptr ? version_ : overlay_shadow_version(key, exaggeration);
+    return overlay_ == nullptr ? ground_version_ : overlay_shadow_version(key, exaggeration);
   }
 
   // Opens a connection of the caller's own to the same planet. Throws PlanetError if the path belongs to another
@@ -134,6 +154,13 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   PlanetFile(const std::string& path, BeforeRead before_read);
   PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> patch, const PlanetFile* former);
   PlanetFile(const PlanetFile& base, std::shared_ptr<const PlanetFile> earlier);
+  PlanetFile(const PlanetFile& base, std::vector<vpe::core::ImageLayerLook> layers, const PlanetFile& former);
+  const PlanetFile& file() const { return file_ ? *file_ : *this; }
+  const std::vector<std::int64_t>& shown_image_keys() const {
+    return composed_keys_ ? *composed_keys_ : image_keys_;
+  }
+  void read_layer_keys(const Database& db);
+  ImageTile composed_image(const lod::TileKey& key) const;
   static std::uint64_t next_version();
   void read_index(const Database& db);
   void set_nodata();  // from mask_keys_
@@ -148,8 +175,8 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   BeforeRead before_read_;
   PlanetMeta meta_;
   std::string meta_checksum_;  // differs between planets
-  std::unique_ptr<lod::TileTree> tree_;
-  std::vector<std::int64_t> image_keys_;   // sorted
+  std::shared_ptr<const lod::TileTree> tree_;
+  std::vector<std::int64_t> image_keys_;   // of the imagery as it was built, sorted
   std::vector<std::int64_t> mask_keys_;    // of tiles with nodata posts, sorted
   std::vector<std::int64_t> nodata_keys_;  // of these and of all above them, sorted
   std::uint64_t version_ = 0;
@@ -160,6 +187,12 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   mutable vpe::base::ObjectPool<Connection> connections_;  // unused where file_ is set
   std::shared_ptr<const PlanetFile> earlier_;
   std::uint64_t compared_version_ = 0;
+  // Of the layers of the file, by layer and sorted; null without layers.
+  std::shared_ptr<const std::vector<std::vector<std::int64_t>>> layer_keys_;
+  std::vector<vpe::core::ImageLayerLook> shown_layers_;
+  std::shared_ptr<const std::vector<std::int64_t>> composed_keys_;  // of shown_layers_, sorted; null without
+  std::uint64_t ground_version_ = 0;                                // of all pages without a patch
+  std::uint64_t images_version_ = 0;  // of image tiles since layers were chosen or left last; 0: never
 };
 
 }  // namespace paging

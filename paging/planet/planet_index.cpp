@@ -113,7 +113,9 @@ std::string content_identity(const Database& db) {
   };
   for (const char* table : {"node", "heights", "missing", "image"}) add(table, "key");
   add("mesh", "key, variant");
-  // Not of `origin` and other later tables: programs that do not know them must find the same.
+  // Not of `origin` and other later tables: programs that do not know them must find the same. Layers are shown, so that
+  // planets which differ in them alone need two identities.
+  if (has_table(db, "image_layer")) add("image_layer", "layer, key");
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(checksum(kApplicationId, all)));
   return text;

@@ -35,8 +35,14 @@ CREATE UNIQUE INDEX mesh_key ON mesh(key, variant);
 CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE INDEX image_keys ON image(key);
 )sql";
+const char* const kLayerSchema = R"sql(
+CREATE TABLE image_layer(id INTEGER PRIMARY KEY, layer INTEGER, key INTEGER, checksum INTEGER, data BLOB);
+CREATE UNIQUE INDEX image_layer_key ON image_layer(layer, key);
+)sql";
 
 namespace {
+
+constexpr int kMinorWithoutLayers = 4;  // so that their files are the same as before
 
 json to_json(const mars::SourceInfo& s) {
   json j{{"name", s.name},
@@ -102,6 +108,37 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
                     [](const auto& x, const auto& y) { return tie(x) == tie(y) && x.datum == y.datum; });
 }
 
+json to_json(const std::vector<ImageLayer>& layers) {
+  json list = json::array();
+  for (const ImageLayer& layer : layers) {
+    list.push_back({{"name", layer.name},
+                    {"source", layer.source},
+                    {"finest_level", layer.finest_level},
+                    {"tiles", layer.tiles},
+                    {"bytes", layer.bytes}});
+  }
+  return list;
+}
+
+// The layers of a file are named by people, in settings.
+std::vector<ImageLayer> layers_from(const json& list, std::size_t sources) {
+  std::vector<ImageLayer> layers;
+  for (const json& j : list) {
+    ImageLayer layer;
+    layer.name = j.at("name").get<std::string>();
+    layer.source = json_integer<int>(j.at("source"));
+    layer.finest_level = json_integer<int>(j.at("finest_level"));
+    layer.tiles = json_integer<std::int64_t>(j.at("tiles"));
+    layer.bytes = json_integer<std::int64_t>(j.at("bytes"));
+    if (layer.name.empty() || std::ranges::find(layers, layer.name, &ImageLayer::name) != layers.end())
+      throw std::invalid_argument("two layers '" + layer.name + "'");
+    if (layer.source < 0 || layer.source >= static_cast<int>(sources))
+      throw std::invalid_argument("no such source");
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
 // Covers all other rows, including those of later minor formats.
 std::string meta_checksum(const std::map<std::string, std::string>& rows) {
   Bytes bytes;
@@ -142,19 +179,21 @@ bool is_planet_file(const std::string& path) {
 bool PlanetMeta::operator==(const PlanetMeta& o) const {
   return body == o.body && radius_m == o.radius_m && datum == o.datum && shape == o.shape &&
          tile.k == o.tile.k && quantum_m == o.quantum_m && fill_m == o.fill_m && equal(sources, o.sources) &&
-         equal(image_sources, o.image_sources) && resampling.max_m == o.resampling.max_m &&
-         resampling.rms_m == o.resampling.rms_m && resampling.posts == o.resampling.posts &&
-         lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
-         leaf_tiles == o.leaf_tiles && tiles == o.tiles && image_tiles == o.image_tiles &&
-         finest_level == o.finest_level && finest_image_level == o.finest_image_level && program == o.program &&
-         identity == o.identity && illustration == o.illustration && build_settings == o.build_settings &&
-         arguments == o.arguments && levels == o.levels && shard == o.shard;
+         equal(image_sources, o.image_sources) && image_layers == o.image_layers &&
+         resampling.max_m == o.resampling.max_m && resampling.rms_m == o.resampling.rms_m &&
+         resampling.posts == o.resampling.posts && lowest_radius_m == o.lowest_radius_m &&
+         highest_radius_m == o.highest_radius_m && leaf_tiles == o.leaf_tiles && tiles == o.tiles &&
+         image_tiles == o.image_tiles && finest_level == o.finest_level &&
+         finest_image_level == o.finest_image_level && program == o.program && identity == o.identity &&
+         illustration == o.illustration && build_settings == o.build_settings && arguments == o.arguments &&
+         levels == o.levels && shard == o.shard;
 }
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
   // json writes doubles with the fewest digits that read back to the same bits, whatever the locale.
   std::map<std::string, std::string> rows{
-      {"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
+      {"format", std::to_string(kFormatMajor) + "." +
+                     std::to_string(m.image_layers.empty() ? kMinorWithoutLayers : kFormatMinor)},
       {"body", m.body},
       {"radius_m", json(m.radius_m).dump()},
       {"datum", to_string(m.datum)},
@@ -180,6 +219,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
   if (!m.build_settings.empty()) rows[kBuildSettingsKey] = m.build_settings;
   if (!m.arguments.empty()) rows[kArgumentsKey] = vpe::core::json_text(json(m.arguments));
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
+  if (!m.image_layers.empty()) rows["image_layers"] = vpe::core::json_text(to_json(m.image_layers));
   if (m.shard) rows["part"] = to_text(*m.shard);
   rows[kMetaChecksumKey] = meta_checksum(rows);
   return rows;
@@ -235,6 +275,8 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     m.illustration = value("illustration").get<bool>();
     if (rows.contains(kBuildSettingsKey)) m.build_settings = text(kBuildSettingsKey);
     if (rows.contains(kArgumentsKey)) m.arguments = value(kArgumentsKey).get<std::vector<std::string>>();
+    if (rows.contains("image_layers"))
+      m.image_layers = layers_from(value("image_layers"), m.image_sources.size());
     current = "levels";
     if (rows.contains("levels")) m.levels = levels_from_text(text("levels"));
     current = "part";

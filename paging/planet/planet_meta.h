@@ -19,7 +19,7 @@ class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
-inline constexpr int kFormatMinor = 4;
+inline constexpr int kFormatMinor = 5;        // of files with image layers; 4 of all others
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
@@ -38,6 +38,17 @@ class PlanetError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Describes a layer of imagery: one image source, which the file holds apart beside the imagery composed of all.
+struct ImageLayer {
+  std::string name;  // unique; the settings and vpe info name it so
+  int source = 0;    // index into PlanetMeta::image_sources
+  int finest_level = -1;
+  std::int64_t tiles = 0;
+  std::int64_t bytes = 0;  // of its tiles as they are stored
+
+  bool operator==(const ImageLayer&) const = default;
+};
+
 // Describes a planet file as a whole.
 struct PlanetMeta {
   std::string body = "Mars";
@@ -49,6 +60,7 @@ struct PlanetMeta {
   double fill_m = 0;                      // drawn where no source has data; query answers null there
   std::vector<mars::SourceInfo> sources;  // elevation; tiles refer to them by index
   std::vector<mars::SourceInfo> image_sources;
+  std::vector<ImageLayer> image_layers;  // the coarsest first; empty: the file has the composed imagery alone
   ResamplingError resampling;
   double lowest_radius_m = 0;   // no point of the reference surface lies below
   double highest_radius_m = 0;  // none above
@@ -75,8 +87,9 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& meta);
 // newer major format, or when the rows do not match their checksum; the message names the file and the key.
 PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path);
 
-// SQL that creates the tables.
+// SQL that creates the tables, and the table of image layers, which only files with layers have.
 extern const char* const kSchema;
+extern const char* const kLayerSchema;
 
 // Holds one row of the tile index (table `node`) with its rows of the tables `variant` and `posts_error`.
 struct NodeRow {

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "paging/planet/ground_version.h"
 #include "paging/planet/planet_file.h"
 
 namespace paging {
@@ -186,12 +187,16 @@ std::uint64_t PlanetOverlay::seen_from(const mars::Cap& cap, double lift_m) cons
 std::uint64_t PlanetFile::overlay_version(const lod::TileKey& key, MadeOf made_of) const {
   // The version of the file under the patches is smaller than any patch's.
   std::uint64_t newest = file_->version_;
+  // What layers show is not in patches.
+  if (made_of == MadeOf::kImage && !shown_layers_.empty()) return newest;
   const auto include = [&](std::uint64_t version) { newest = std::max(newest, version); };
   const auto include_tile = [&](const lod::TileKey& of) { include(overlay_->tile_version(lod::pack(of))); };
   const auto include_image = [&](const lod::TileKey& of) { include(overlay_->image_version(lod::pack(of))); };
+  // The ground may go back to the file's while the choice of layers stays, so the larger of both numbers is no name.
+  const auto with_layers = [&] { return images_version_ << kGroundVersionBits | newest; };
   if (made_of == MadeOf::kImage) {
     include_image(key);
-    return newest;
+    return with_layers();
   }
   include_tile(key);
   if (made_of == MadeOf::kTile) return newest;
@@ -207,7 +212,7 @@ std::uint64_t PlanetFile::overlay_version(const lod::TileKey& key, MadeOf made_o
   // A finer image that is gone was shown before.
   for (int level = key.level; level >= 0 && overlay_->has_returned_images(); --level)
     include_image(lod::ancestor(key, level));
-  return newest;
+  return with_layers();
 }
 
 std::uint64_t PlanetFile::overlay_shadow_version(const lod::TileKey& key, double exaggeration) const {

@@ -208,12 +208,18 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> 
       file_(base.file_ ? base.file_ : base.shared_from_this()),
       connections_([this] { return std::make_unique<Connection>(*this); }),
       earlier_(base.earlier_),
-      compared_version_(base.compared_version_) {
+      compared_version_(base.compared_version_),
+      layer_keys_(base.layer_keys_),
+      shown_layers_(base.shown_layers_),
+      composed_keys_(base.composed_keys_),
+      ground_version_(version_),
+      images_version_(base.images_version_) {
+  meta_.image_layers = base.meta_.image_layers;
   check_patch_meta(base.meta_, meta_);
   check_source_numbers(base.meta_, *patch);
   try {
-    tree_ = std::make_unique<lod::TileTree>(merged_tiles(*base.tree_, *patch), meta_.tile, meta_.radius_m,
-                                            meta_.lowest_radius_m);
+    tree_ = std::make_shared<const lod::TileTree>(merged_tiles(*base.tree_, *patch), meta_.tile, meta_.radius_m,
+                                                  meta_.lowest_radius_m);
   } catch (const WrongPatch&) {
     throw;
   } catch (const std::runtime_error& e) {
@@ -246,6 +252,9 @@ PlanetFile::PlanetFile(const PlanetFile& base, std::shared_ptr<const TilePatch> 
   const bool can_share = former != nullptr && former->overlay_ && former->file_ == file_ &&
                          former->compared_version_ == compared_version_;
   if (can_share) overlay->follow(*former->overlay_, version_);
+  if (former != nullptr && former->shown_layers_ != shown_layers_) images_version_ = version_;
+  if (former != nullptr && former->shown_layers_ == shown_layers_ && is_same_file(*former))
+    images_version_ = former->images_version_;
   overlay_ = std::move(overlay);
 }
 

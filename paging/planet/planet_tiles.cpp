@@ -1,6 +1,7 @@
 // Reading of tiles; planet_file.cpp opens the file and reads its index.
 #include <algorithm>
 
+#include "paging/planet/layer_composite.h"
 #include "paging/planet/planet_connection.h"
 #include "paging/planet/planet_overlay.h"
 #include "vpe/core/image/image.h"
@@ -203,8 +204,39 @@ TileSources PlanetFile::sources(const lod::TileKey& key) const {
   return out;
 }
 
+// From the uppermost layer down to the first that hides all below it.
+ImageTile PlanetFile::composed_image(const lod::TileKey& key) const {
+  LayerComposite composite(key);
+  try {
+    for (auto look = shown_layers_.rbegin(); look != shown_layers_.rend() && !composite.is_opaque(); ++look) {
+      if (look->opacity == 0) continue;
+      const auto layer = std::ranges::find(meta_.image_layers, look->name, &ImageLayer::name);
+      const std::int64_t number = layer - meta_.image_layers.begin();
+      const std::vector<std::int64_t>& keys = (*layer_keys_)[static_cast<std::size_t>(number)];
+      lod::TileKey at = lod::ancestor(key, std::min(key.level, layer->finest_level));
+      while (!std::ranges::binary_search(keys, lod::pack(at)) && at.level > 0) at = lod::parent(at);
+      const std::int64_t row = lod::pack(at);
+      if (!std::ranges::binary_search(keys, row)) continue;
+      const std::string what = "image layer '" + look->name + "'";
+      const auto packed = read([&](Connection& connection) {
+        if (!connection.layer) throw PlanetError(damaged(path_, at, what + " is missing"));
+        connection.layer->bind(1, number).bind(2, row);
+        return verified(*connection.layer, row, path_, at, what.c_str());
+      });
+      if (!packed) throw PlanetError(damaged(path_, at, what + " is missing"));
+      composite.add(*look, decode_layer_tile(*packed), at);
+    }
+  } catch (const PlanetError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    throw PlanetError(damaged(path_, key, e.what()));
+  }
+  return {composite.texels()};
+}
+
 ImageTile PlanetFile::image(const lod::TileKey& key) const {
   if (before_read_) before_read_(key);
+  if (!shown_layers_.empty()) return composed_image(key);
   const std::int64_t row = lod::pack(key);
   try {
     const PlanetOverlay::Image* patched = is_patched() ? overlay_->image(row) : nullptr;

@@ -11,6 +11,16 @@ namespace paging {
 
 namespace {
 
+void check_layer_rows(const PlanetMeta& meta, const Database& db, VerifyReport& report) {
+  if (meta.image_layers.empty()) return;
+  std::vector<ImageLayer> found = meta.image_layers;
+  for (ImageLayer& layer : found) layer.bytes = 0;
+  Statement rows(db, "SELECT layer, length(data) FROM image_layer");
+  while (rows.step()) found.at(static_cast<std::size_t>(rows.integer(0))).bytes += rows.integer(1);
+  if (found != meta.image_layers)
+    report.problems.push_back({"meta", "'image_layers' differs from what the tables hold"});
+}
+
 void check_database(const PlanetFile& planet, VerifyReport& report) {
   try {
     Database db = planet.connect();
@@ -38,6 +48,7 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
     expect_rows("variant", variants);
     expect_rows("mesh", meshes);
     expect_rows("image", planet.meta().image_tiles);
+    check_layer_rows(planet.meta(), db, report);
     for (const std::string& wrong :
          wrong_meta(planet.meta(), planet.tree().tiles(), summarize_levels(db, posts)))
       report.problems.push_back({"meta", wrong});
@@ -46,6 +57,23 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
   } catch (const std::runtime_error& e) {  // DatabaseError, PlanetError, CodecError
     report.problems.push_back({"database", e.what()});
   }
+}
+
+// An image tile of a planet that shows one layer alone.
+struct LayerImage {
+  std::shared_ptr<const PlanetFile> planet;
+  lod::TileKey key;
+};
+
+std::vector<LayerImage> layer_images(const PlanetFile& planet) {
+  std::vector<LayerImage> images;
+  for (const ImageLayer& layer : planet.meta().image_layers) {
+    vpe::core::ImageLayerLook look;
+    look.name = layer.name;
+    const auto alone = planet.with_images({look});
+    for (const lod::TileKey& key : alone->image_keys()) images.push_back({alone, key});
+  }
+  return images;
 }
 
 void add(const TileFindings& tile, VerifyReport& all) {
@@ -66,6 +94,7 @@ VerifyReport verify(const PlanetFile& planet, const VerifyOptions& options, cons
 
   const auto tiles = planet.tree().tiles();
   const std::vector<lod::TileKey> images = planet.image_keys();
+  const std::vector<LayerImage> layers = layer_images(planet);
   std::vector<const lod::TileInfo*> deep;
   {
     std::vector<const lod::TileInfo*> leaves;
@@ -76,7 +105,8 @@ VerifyReport verify(const PlanetFile& planet, const VerifyOptions& options, cons
     for (std::size_t n = 0; n < count; ++n) deep.push_back(leaves[n * leaves.size() / count]);
   }
 
-  const std::size_t total = tiles.size() + images.size() + deep.size();
+  const std::size_t after_images = tiles.size() + images.size();
+  const std::size_t total = after_images + layers.size() + deep.size();
   std::vector<TileFindings> found(total);
   std::mutex mutex;
   std::size_t done = 0;
@@ -86,8 +116,11 @@ VerifyReport verify(const PlanetFile& planet, const VerifyOptions& options, cons
                               found[n] = check_tile(planet, tiles[n]);
                             } else if (n - tiles.size() < images.size()) {
                               found[n] = check_image(planet, images[n - tiles.size()]);
+                            } else if (n - after_images < layers.size()) {
+                              const LayerImage& at = layers[n - after_images];
+                              found[n] = check_image(*at.planet, at.key);
                             } else {
-                              found[n] = measure_tile(planet, *deep[n - tiles.size() - images.size()]);
+                              found[n] = measure_tile(planet, *deep[n - after_images - layers.size()]);
                             }
                             if (!progress) return;
                             const std::lock_guard lock(mutex);

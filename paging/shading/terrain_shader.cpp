@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "paging/planet/ground_version.h"
 #include "paging/shading/terrain_grid.h"
 #include "vpe/core/appearance/light_choice.h"
 #include "vpe/core/appearance/shading.h"
@@ -128,9 +129,11 @@ void TerrainShader::change_planet(std::shared_ptr<const PlanetFile> planet, std:
 std::uint64_t shading_version(const PlanetFile& planet, const lod::TileKey& key, MadeOf made_of,
                               const ShadingParams& params) {
   std::uint64_t version = planet.version(key, made_of);
-  if (shows_difference(params)) version = std::max(version, planet.compared_version());
+  const auto include = [&](std::uint64_t of_ground) { version = with_ground_version(version, of_ground); };
+  if (shows_difference(params)) include(planet.compared_version());
   if (!params.lit || !params.shadows || !planet.is_patched()) return version;
-  return std::max(version, planet.shadow_version(key, params.exaggeration));
+  include(planet.shadow_version(key, params.exaggeration));
+  return version;
 }
 
 TerrainShader::NormalKey TerrainShader::normal_key(const lod::TileKey& key, const ShadingParams& params) const {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "lod/mesh/mesh.h"
+#include "paging/planet/image_stretch.h"
 #include "paging/planet/planet_file.h"
-#include "paging/shading/image_stretch.h"
 #include "paging/surface/surface.h"
 #include "vpe/base/lru_cache.h"
 #include "vpe/core/appearance/palette.h"

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "lod/tree/facet.h"
 #include "mars/geodesy/cube.h"
 #include "paging/surface/surface.h"
 
@@ -22,6 +23,11 @@ class PlaceCursor {
   // Goes to a direction of any length but 0. Returns the point of the surface there. Throws PlanetError.
   const SurfacePoint& move_to(const glm::dvec3& direction);
 
+  // Goes to a unit direction that is known within `error_rad`, at most 1e-6. Returns the point there, or null where another
+  // direction within the error could be on another facet or have another nearest post: then the cursor is at no place.
+  // Throws PlanetError.
+  const SurfacePoint* move_near(const glm::dvec3& direction, double error_rad);
+
   // Returns the sources of the tile of the last place. Throws PlanetError.
   const TileSources& sources();
 
@@ -37,11 +43,19 @@ class PlaceCursor {
   Resampling resampling(int source);
 
  private:
+  bool is_on_facet() const;
+  void find_facet();
+  void find_point();
+
   const Surface& surface_;
   mars::ChartPoint chart_;
   SurfacePoint point_;
   std::shared_ptr<const SurfaceTile> tile_;
+  std::optional<lod::Facet> facet_;  // of tile_
   std::shared_ptr<const TileSources> sources_;
+  // The last answer of resampling(), in tile_.
+  std::optional<int> resampled_source_;
+  Resampling resampling_;
 };
 
 }  // namespace paging

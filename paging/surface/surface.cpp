@@ -141,6 +141,14 @@ std::size_t nearest_post(const SurfaceTile& tile, const mars::ChartPoint& point)
          nearest(place_between(tile.lines.u, point.u));
 }
 
+bool is_nodata(const SurfaceTile& tile, const mars::ChartPoint& point) {
+  if (tile.data.nodata.empty()) return false;
+  const auto [i, x] = place_between(tile.lines.u, point.u);
+  const auto [j, y] = place_between(tile.lines.v, point.v);
+  const auto side = static_cast<std::size_t>(tile.data.posts.side());
+  return lod::is_flagged(tile.data.nodata, j * side + i, side, x, y);
+}
+
 SurfacePoint point_in(const SurfaceTile& tile, const mars::ChartPoint& point, double planet_radius_m,
                       double exaggeration) {
   SurfacePoint out;
@@ -148,12 +156,7 @@ SurfacePoint point_in(const SurfaceTile& tile, const mars::ChartPoint& point, do
   out.height_m = lod::surface_height(tile.data.posts, tile.lines, point.u, point.v, planet_radius_m,
                                      &out.normal, exaggeration);
   out.radius_m = planet_radius_m + out.height_m;
-  if (!tile.data.nodata.empty()) {
-    const auto [i, x] = place_between(tile.lines.u, point.u);
-    const auto [j, y] = place_between(tile.lines.v, point.v);
-    const auto side = static_cast<std::size_t>(tile.data.posts.side());
-    out.nodata = lod::is_flagged(tile.data.nodata, j * side + i, side, x, y);
-  }
+  out.nodata = is_nodata(tile, point);
   return out;
 }
 

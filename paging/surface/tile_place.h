@@ -35,6 +35,9 @@ inline PlaceBetweenLines place_between(const std::vector<double>& lines, double 
   return {n, std::clamp((x - lines[n]) / (lines[n + 1] - lines[n]), 0.0, 1.0)};
 }
 
+// Returns whether a post of the facet at a place of the tile has no data.
+bool is_nodata(const SurfaceTile& tile, const mars::ChartPoint& point);
+
 // Returns the point of a finest tile at a place in it, as Surface::at() does. `planet_radius_m` is that of the sphere.
 SurfacePoint point_in(const SurfaceTile& tile, const mars::ChartPoint& point, double planet_radius_m,
                       double exaggeration);

@@ -1,5 +1,5 @@
 // The stretch of imagery against gdal_translate.
-#include "paging/shading/image_stretch.h"
+#include "paging/planet/image_stretch.h"
 
 #include <gdal_priv.h>
 #include <gdal_utils.h>

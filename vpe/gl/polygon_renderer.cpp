@@ -73,6 +73,7 @@ class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
   void change_planet(std::shared_ptr<const paging::PlanetFile> planet) override;
 
  private:
+  void go_over_to(std::shared_ptr<const paging::PlanetFile> planet);
   void draw_sky(const core::DrawRequest& request, const ClipProjection& clip);
   void set_material(const core::DrawRequest& request);
   void draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image);
@@ -362,6 +363,11 @@ std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& reque
 }
 
 void PolygonRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  go_over_to(paging::keep_layers(std::move(planet), planet_));
+}
+
+void PolygonRenderer::go_over_to(std::shared_ptr<const paging::PlanetFile> planet) {
+  if (planet == planet_) return;
   paging::require_same_grid(*planet_, *planet);
   draws_.clear();
   scene_.change_planet(planet);
@@ -371,6 +377,7 @@ void PolygonRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> pl
 
 core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   core::DrawRequest request = asked;
+  go_over_to(paging::with_layers_of(planet_, request.settings.image_layers));
   paging::fit_to_planet(request.settings, planet_->meta());
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);

@@ -85,6 +85,7 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   void change_planet(std::shared_ptr<const paging::PlanetFile> planet) override;
 
  private:
+  void go_over_to(std::shared_ptr<const paging::PlanetFile> planet);
   static std::size_t share(const RayOptions& options, double part) {
     return static_cast<std::size_t>(part * static_cast<double>(options.memory_bytes));
   }
@@ -510,6 +511,11 @@ void RayRenderer::finish_paging(const core::DrawRequest& request, const Image& i
 }
 
 void RayRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  go_over_to(paging::keep_layers(std::move(planet), planet_));
+}
+
+void RayRenderer::go_over_to(std::shared_ptr<const paging::PlanetFile> planet) {
+  if (planet == planet_) return;
   paging::require_same_grid(*planet_, *planet);
   prefetcher_.stop();
   loader_.reset();
@@ -522,6 +528,7 @@ void RayRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   core::DrawRequest for_planet = request;
+  go_over_to(paging::with_layers_of(planet_, request.settings.image_layers));
   paging::fit_to_planet(for_planet.settings, planet_->meta());
   try {
     return draw_image(for_planet);
@@ -642,6 +649,7 @@ core::DrawResult RayRenderer::draw_pixels(const core::DrawRequest& request, cons
       (request.want_colour && frame.colour.size() != pixels))
     throw std::invalid_argument("the pixels to draw have another size than the image");
   core::DrawRequest for_planet = request;
+  go_over_to(paging::with_layers_of(planet_, request.settings.image_layers));
   paging::fit_to_planet(for_planet.settings, planet_->meta());
   prefetcher_.stop();
   const bool reads_all = loader_.begin(for_planet);

@@ -34,6 +34,7 @@ void build(BuildArguments& arguments, const Common& common) {
   const RequestedSources sources = open_sources(arguments.request, options);
   const mars::Combined& combined = sources.combined;
   if (!common.quiet) print_findings(combined);
+  print_image_notes(sources, common);
   const std::shared_ptr<const mars::ImageSource>& image = sources.image;
 
   paging::BuildPlan plan = paging::plan_tiles(options, *combined.source);
@@ -76,6 +77,8 @@ void add_build(CLI::App& program, Common& common) {
       {{"elevation and imagery of the whole planet", "vpe build mola.tif --image viking.tif -o mars.vpe"},
        {"a finer inset; at each place the finest raster decides",
         "vpe build mola.tif ctx.tif --image viking.tif --image ortho.tif --align edges -o gale.vpe"},
+       {"images that can be switched and mixed while looking, of colours that fit at their boundaries",
+        "vpe build mola.tif --image viking.tif --image ctx.tif --images-apart --match-colour -o layers.vpe"},
        {"a scanned picture with control points, by an affine map",
         "vpe build mola.tif --image scan.tif --gcp-method polynomial1 -o scan.vpe"},
        {"a satellite image with RPC, over the ground of a DEM",

@@ -2,15 +2,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "mars/embedded/embedded.h"
 #include "mars/geodesy/bodies.h"
 #include "mars/raster/placed_sources.h"
+#include "mars/sources/layered_image.h"
 #include "mars/sources/source_checks.h"
 #include "relief/files/relief_file.h"
 #include "relief/relief_source.h"
 #include "vpe/app/cli/parsing.h"
+#include "vpe/app/planet/layer_names.h"
 #include "vpe/app/planet/source_mask.h"
 #include "vpe/base/number.h"
 
@@ -73,6 +76,12 @@ void add_build_request(CLI::App& command, BuildRequest& request) {
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_flag(
+      "--images-apart{stem}", request.images_apart,
+      "Keep each image as a layer too, for image.layers; named by its file, or in the order of --image by "
+      "--images-apart='NAME;NAME'");
+  command.add_flag("--match-colour", request.match_colour,
+                   "Match the colours of each image to those of the coarser images below it, at its boundary");
   command
       .add_option("--region", request.regions,
                   "WEST,SOUTH,EAST,NORTH: build full resolution only in this box, degrees (repeatable)")
@@ -122,6 +131,8 @@ std::vector<std::string> to_arguments(const BuildRequest& request) {
     for (const std::string& value : values) add(name, value);
   };
   add_all("--image", request.images);
+  add_text("--images-apart", request.images_apart, defaults.images_apart);
+  if (request.match_colour) out.emplace_back("--match-colour");
   add_all("--region", request.regions);
   add_number("--spacing", request.finest_spacing_m, defaults.finest_spacing_m);
   add_number("--image-spacing", request.finest_image_m, defaults.finest_image_m);
@@ -220,9 +231,25 @@ RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions&
                                                : mars::open_image(path, placement(path, options.radius_m)));
     mars::check_body(sources.images.back()->infos().front(), options.radius_m);
   }
-  if (!sources.images.empty())
+  if (request.match_colour) sources.image_notes = match_colours(sources.images);
+  if (sources.images.empty()) {
+    if (request.match_colour || !request.images_apart.empty())
+      throw UsageError(
+          "--images-apart and --match-colour are of images, and none is given; name them with --image");
+  } else if (!request.images_apart.empty()) {
+    const std::vector<std::string> names = layer_names(request.images, request.images_apart);
+    std::vector<mars::NamedImage> named;
+    for (std::size_t n = 0; n < names.size(); ++n) named.push_back({names[n], sources.images[n]});
+    sources.image = mars::stack_images_apart(std::move(named));
+  } else {
     sources.image = sources.images.size() == 1 ? sources.images.front() : mars::stack_images(sources.images);
+  }
   return sources;
+}
+
+void print_image_notes(const RequestedSources& sources, const Common& common) {
+  if (common.quiet) return;
+  for (const std::string& note : sources.image_notes) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
 }
 
 }  // namespace vpe::app

@@ -16,6 +16,9 @@ namespace vpe::app {
 struct BuildRequest {
   std::vector<std::string> dems;  // rasters and files of reliefs
   std::vector<std::string> images;
+  std::string
+      images_apart;  // empty: composed alone; "stem", or names of layers with ';' between them, by `images`
+  bool match_colour = false;
   std::vector<std::string> regions;  // WEST,SOUTH,EAST,NORTH
   SourceArguments sources;
   PlacementArguments placement;
@@ -46,14 +49,19 @@ std::vector<std::string> rasters_of(const BuildRequest& request);
 // Holds the opened sources of a request.
 struct RequestedSources {
   std::vector<std::shared_ptr<const mars::ElevationSource>>
-      dems;                                                      // the rasters of BuildRequest::dems, as opened
-  std::vector<relief::Relief> reliefs;                           // the files of reliefs among them
-  std::vector<std::shared_ptr<const mars::ImageSource>> images;  // by BuildRequest::images
-  mars::Combined combined;                                       // of `dems`, changed by `reliefs`
-  std::shared_ptr<const mars::ImageSource> image;                // of `images`; null if there are none
+      dems;                             // the rasters of BuildRequest::dems, as opened
+  std::vector<relief::Relief> reliefs;  // the files of reliefs among them
+  std::vector<std::shared_ptr<const mars::ImageSource>>
+      images;                                      // by BuildRequest::images, with matched colours
+  mars::Combined combined;                         // of `dems`, changed by `reliefs`
+  std::shared_ptr<const mars::ImageSource> image;  // of `images`; null if there are none
+  std::vector<std::string> image_notes;            // sentences for the user about their colours
 };
 
 // Opens the sources and sets the options of the build that the request decides. Throws UsageError, mars::SourceError.
 RequestedSources open_sources(const BuildRequest& request, paging::BuildOptions& options);
+
+// Prints on stderr, unless quiet, what was found about the colours of images.
+void print_image_notes(const RequestedSources& sources, const Common& common);
 
 }  // namespace vpe::app

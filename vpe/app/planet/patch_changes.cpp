@@ -152,6 +152,11 @@ paging::ChangedIn image_changes(const RequestedSources& before, const RequestedS
   std::vector<bool> changed(now.images.size());
   for (std::size_t n = before.images.size(); n < changed.size(); ++n) changed[n] = true;
   mark_faded(now.images, before.images.size(), changed);
+  // Colours that are matched to other imagery than before.
+  for (std::size_t n = 0; n < before.images.size(); ++n) {
+    if (before.images[n]->infos().front().treatment != now.images[n]->infos().front().treatment)
+      changed[n] = true;
+  }
   return within(now.images, changed);
 }
 

@@ -218,6 +218,7 @@ void patch(PatchArguments& arguments, const Common& common) {
   const RequestedSources sources = open_sources(request, options);
   if (!common.quiet) {
     print_findings(sources.combined);
+    print_image_notes(sources, common);
     note_limits(request, sources, sources_before.dems.size(), options);
   }
   const paging::PatchedPlanet patched{

@@ -72,11 +72,13 @@ std::string duration(double seconds) {
 }
 
 std::string estimate_text(const paging::BuildEstimate& e) {
-  char text[200];
+  char text[240];
+  const std::string layers =
+      e.layer_tiles > 0 ? std::to_string(e.layer_tiles) + " tiles of image layers, " : std::string();
   std::snprintf(text, sizeof text,
-                "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %s, about %s",
+                "%lld tiles (%lld finest), %lld image tiles, %s%.1f million posts, about %s, about %s",
                 static_cast<long long>(e.leaf_tiles + e.inner_tiles), static_cast<long long>(e.leaf_tiles),
-                static_cast<long long>(e.image_tiles), 1e-6 * static_cast<double>(e.posts),
+                static_cast<long long>(e.image_tiles), layers.c_str(), 1e-6 * static_cast<double>(e.posts),
                 bytes_text(static_cast<double>(e.bytes)).c_str(), duration(e.wall_s).c_str());
   return text;
 }
@@ -147,6 +149,7 @@ void print_estimate_only(const paging::BuildEstimate& e, const Common& common) {
   print_json({{"tiles", e.leaf_tiles + e.inner_tiles},
               {"finest_tiles", e.leaf_tiles},
               {"image_tiles", e.image_tiles},
+              {"layer_tiles", e.layer_tiles},
               {"posts", e.posts},
               {"bytes", e.bytes},
               {"processor_s", e.processor_s},

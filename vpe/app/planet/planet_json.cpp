@@ -21,6 +21,20 @@ json sources_json(const std::vector<mars::SourceInfo>& sources, bool are_images)
   return list;
 }
 
+json image_layers_json(const paging::PlanetMeta& m) {
+  json list = json::array();
+  for (const paging::ImageLayer& layer : m.image_layers) {
+    list.push_back(
+        {{"name", layer.name},
+         {"source", m.image_sources.at(static_cast<std::size_t>(layer.source)).name},
+         {"finest_level", layer.finest_level},
+         {"texel_spacing_m", lod::post_spacing_m(layer.finest_level, paging::kImageIntervals, m.radius_m)},
+         {"tiles", layer.tiles},
+         {"bytes", layer.bytes}});
+  }
+  return list;
+}
+
 json levels_json(const paging::PlanetMeta& m) {
   json list = json::array();
   for (const paging::LevelSummary& l : m.levels) {
@@ -63,6 +77,7 @@ json planet_json(const paging::PlanetMeta& m) {
            {"by_level", levels_json(m)},
            {"sources", sources_json(m.sources, false)},
            {"image_sources", sources_json(m.image_sources, true)},
+           {"image_layers", image_layers_json(m)},
            {"program", m.program},
            {"arguments", m.arguments},
            {"identity", m.identity}};

@@ -182,6 +182,7 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
 
   core::DrawResult draw(const core::DrawRequest& request) override {
     if (!has_objects(request)) return ground_->draw(request);
+    show_layers(request);
     const PlacedScene placed = pass().scene(request);
     pass().note_cuts(placed, request);
     if (!request.want_range && request.want_colour) {
@@ -227,6 +228,14 @@ class ObjectRenderer : public Base, public paging::PlanetUser {
            request.coarsening <= 1;
   }
 
+  // Objects are lit by the imagery that the request shows.
+  void show_layers(const core::DrawRequest& request) {
+    auto planet = paging::with_layers_of(planet_, request.settings.image_layers);
+    if (planet == planet_) return;
+    pass_.reset();
+    planet_ = std::move(planet);
+  }
+
   ObjectPass& pass() {
     if (!pass_) pass_.emplace(planet_, options_);
     return *pass_;
@@ -247,6 +256,7 @@ class ObjectPixelRenderer : public ObjectRenderer<core::PixelRenderer> {
   core::DrawResult draw_pixels(const core::DrawRequest& request, const core::WantedPixels& wanted,
                                core::Frame& frame) override {
     if (!has_objects(request)) return ground_->draw_pixels(request, wanted, frame);
+    show_layers(request);
     const PlacedScene placed = pass().scene(request);
     core::DrawResult result = ground_->draw_pixels(ground_request(request, placed), wanted, frame);
     if (!result.certificate.is_below_ground)

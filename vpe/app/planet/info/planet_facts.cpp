@@ -69,6 +69,14 @@ std::vector<Fact> planet_facts(const paging::PlanetMeta& m) {
     add_source(
         facts, "image from", s,
         length_text(s.resolution_m) + " pixels" + (s.has_own_light ? ", a photograph with its own light" : ""));
+  for (const paging::ImageLayer& layer : m.image_layers) {
+    const mars::SourceInfo& source = m.image_sources.at(static_cast<std::size_t>(layer.source));
+    add_line(facts, "image layer",
+             layer.name + " (" + source.name + ", " + std::to_string(layer.tiles) + " tiles, " +
+                 bytes_text(static_cast<double>(layer.bytes)) + ", finest texels " +
+                 length_text(lod::post_spacing_m(layer.finest_level, paging::kImageIntervals, m.radius_m)) +
+                 ")");
+  }
   add_line(facts, "built by", "vpe " + m.program + ", identity " + m.identity);
   return facts;
 }

@@ -1,7 +1,9 @@
 // The stretch of imagery: which values are black and white, and how what lies between is distributed.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace paging {
@@ -16,6 +18,15 @@ struct ImageStretch {
 
 // Returns what each value becomes: 255 ((v - low) / (high - low))^(1 / gamma), rounded, and cut to 0 to 255, as
 // `gdal_translate -scale LOW HIGH 0 255 -exponent 1/GAMMA` makes it. With equal ends, values from `high` on are white. Pure.
-std::array<std::uint8_t, 256> stretch_table(const ImageStretch& stretch);
+inline std::array<std::uint8_t, 256> stretch_table(const ImageStretch& stretch) {
+  std::array<std::uint8_t, 256> table{};
+  const double span = stretch.high - stretch.low;
+  for (std::size_t value = 0; value < table.size(); ++value) {
+    const double from_low = static_cast<double>(value) - stretch.low;
+    const double share = span == 0 ? (from_low >= 0 ? 1 : 0) : std::clamp(from_low / span, 0.0, 1.0);
+    table[value] = static_cast<std::uint8_t>(std::lround(255 * std::pow(share, 1 / stretch.gamma)));
+  }
+  return table;
+}
 
 }  // namespace paging
