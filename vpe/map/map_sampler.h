@@ -13,6 +13,7 @@
 #include "paging/surface/surface.h"
 #include "vpe/map/map_bands.h"
 #include "vpe/map/map_grid.h"
+#include "vpe/map/place_block.h"
 
 namespace vpe::map {
 
@@ -46,6 +47,10 @@ using MapRows = std::vector<std::vector<float>>;
 
 // Computes maps of one surface. Values are those of paging::query() at the middle of a pixel, rounded to float; colours
 // those of TerrainShader::colour_at() without light, at least 1. Any thread may call const members.
+//
+// PROJ is asked for few pixels: PlaceBlock gives the directions of all others within kPlaceBlockError_rad, and where that
+// error leaves the rounding of a value open, PROJ is asked after all. So no value depends on the blocks. Maps with colours or
+// with the sun are made by PROJ alone.
 class MapSampler {
  public:
   // `shader` is needed for colours alone, else null. All must outlive the sampler. Throws std::invalid_argument where the
@@ -56,12 +61,22 @@ class MapSampler {
   const MapGrid& grid() const { return grid_; }
   std::size_t channels() const { return channels_; }
 
+  // Returns the number of rows, a power of two, that rows() makes fastest when it begins at a multiple of it.
+  int rows_at_once() const;
+
   // Computes whole rows, and adds up what lies under them. Throws PlanetError.
   MapRows rows(int first_row, int count, MapGround& ground) const;
 
  private:
   struct Pixel;
-  void fill(const Pixel& pixel, std::span<float> values) const;
+  struct Pass;
+  void fill_block(const PixelRect& block, int first_row, int end_row, Pass& pass) const;
+  bool fill_near(const glm::dvec3& direction, std::size_t index, Pass& pass) const;
+  void fill_exact(const std::vector<std::size_t>& pixels, Pass& pass) const;
+  Pixel look(const mars::LonLat* place, const glm::dvec3& direction, const paging::SurfacePoint& point,
+             Pass& pass) const;
+  void keep(const Pixel& pixel, std::size_t index, Pass& pass) const;
+  bool fill(const Pixel& pixel, std::span<float> values) const;
   float sun_hours(const glm::dvec3& place_m, const glm::dvec3& normal) const;
   double seen_share(const std::vector<glm::dvec3>& sol, const glm::dvec3& place_m,
                     const glm::dvec3& normal) const;
@@ -76,6 +91,7 @@ class MapSampler {
   std::size_t channels_ = 0;
   paging::ShadingParams image_;  // of colours
   double footprint_m_ = 1;
+  int block_side_ = 0;  // 0: without blocks
 };
 
 }  // namespace vpe::map

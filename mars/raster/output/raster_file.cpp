@@ -14,6 +14,8 @@ namespace mars {
 namespace {
 
 constexpr const char* kBlock = "512";
+constexpr int kBlockRows = 512;
+constexpr int kRowsOfTile = 16;  // TIFF tiles have multiples of them
 
 GDALDataType gdal_type(BandType type) {
   switch (type) {
@@ -75,8 +77,9 @@ DatasetPointer make_plain_raster(const std::filesystem::path& path, const Raster
   CPLStringList options;
   options.SetNameValue("TILED", "YES");
   options.SetNameValue("BLOCKXSIZE", kBlock);
-  options.SetNameValue("BLOCKYSIZE", kBlock);
-  options.SetNameValue("COMPRESS", "LZW");
+  // Such files live for a short time, and floats without a predictor hardly shrink.
+  const int rows = std::min(kBlockRows, (info.rows + kRowsOfTile - 1) / kRowsOfTile * kRowsOfTile);
+  options.SetNameValue("BLOCKYSIZE", std::to_string(rows).c_str());
   options.SetNameValue("INTERLEAVE", "BAND");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
   DatasetPointer dataset = owned(driver_of("GTiff").Create(path.c_str(), info.columns, info.rows,

@@ -15,7 +15,7 @@ namespace mars {
 
 using DatasetPointer = std::unique_ptr<GDALDataset, std::function<void(GDALDataset*)>>;
 
-// Makes a compressed GeoTIFF without contents. Throws SourceError.
+// Makes a GeoTIFF without contents and without compression, for a short time. Throws SourceError.
 DatasetPointer make_plain_raster(const std::filesystem::path& path, const RasterInfo& info);
 
 // Writes whole rows of one band, as RasterWriter::write() does. Throws SourceError.

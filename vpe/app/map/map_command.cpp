@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
+#include "paging/planet/planet_look.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -12,6 +14,7 @@
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/planet/shard_option.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/image_layers.h"
 
 namespace vpe::app {
 
@@ -29,6 +32,7 @@ struct MapArguments {
   std::string shade;
   std::string sun;
   std::string over = "sol";
+  std::string image_layers;
   std::string part;
   std::string output;
 };
@@ -58,6 +62,16 @@ void print_map(const nlohmann::json& map, const std::string& output) {
               percent("nodata_share").c_str(), percent("synthetic_share").c_str());
 }
 
+std::shared_ptr<const paging::PlanetFile> with_image_layers(
+    const std::shared_ptr<const paging::PlanetFile>& planet, const std::string& layers, MapRequest& request) {
+  if (const std::string problem = core::image_layers_problem(layers); !problem.empty())
+    throw UsageError("--image-layers '" + layers + "': " + problem);
+  if (std::ranges::find(request.bands, map::MapBand::colour) == request.bands.end())
+    throw UsageError("--image-layers: of the bands only colour shows imagery; add it to --bands");
+  request.image_layers = layers;
+  return paging::with_layers_of(planet, layers);
+}
+
 void run_map(const MapArguments& a, const Common& common) {
   MapRequest request;
   request.box = parse_box(a.box);
@@ -72,7 +86,9 @@ void run_map(const MapArguments& a, const Common& common) {
   request.year = a.over == "year";
   const base::Shard shard = parse_shard(a.part);
   check_outputs({{"-o", a.output, FileKind::kMap}}, {a.planet});
-  const auto planet = open_planet(a.planet, common);
+  auto planet = open_planet(a.planet, common);
+  if (!a.image_layers.empty()) planet = with_image_layers(planet, a.image_layers, request);
+  require_planet_of_box(a.box, planet->meta());
   note_illustration(planet->meta(), common.quiet);
   request.crs = a.crs.empty() ? "+proj=eqc +R=" + base::format_number(planet->meta().radius_m) : a.crs;
   light_of(request, planet->meta());
@@ -101,8 +117,9 @@ void add_map(CLI::App& program, Common& common) {
   CLI::App* command =
       add_command(program, "map", "Write heights, slopes, light and colours in map coordinates", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--box", arguments->box,
-                      "WEST,SOUTH,EAST,NORTH, degrees, planetocentric (default: all of the planet)");
+  command->add_option(
+      "--box", arguments->box,
+      "WEST,SOUTH,EAST,NORTH, degrees, planetocentric, or the name of a feature (default: all of the planet)");
   command->add_option(
       "--crs", arguments->crs,
       "Coordinate system: IAU_2015:CODE, a PROJ string, WKT (default: equirectangular, true at the "
@@ -124,6 +141,10 @@ void add_map(CLI::App& program, Common& common) {
                    "Time of band sun_hours: the sol of the date, or the mean of 24 sols of a year")
       ->check(CLI::IsMember({"sol", "year"}))
       ->capture_default_str();
+  command->add_option(
+      "--image-layers", arguments->image_layers,
+      "Image layers that the band colour shows, as the setting image.layers has them: "
+      "NAME@OPACITY low= high= gamma=, with ';' between them (default: the imagery as the planet was built)");
   command->add_option(
       "--part", arguments->part,
       "K/N: make one of N parts of the strips; a run without --part makes what is missing and joins all");

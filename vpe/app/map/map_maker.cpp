@@ -24,13 +24,25 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kStripBytes = std::int64_t{64} << 20;
 constexpr int kMostStripRows = 512;
-constexpr int kRowsOfItem = 4;
+constexpr int kFewestRows = 4;
+constexpr std::int64_t kMostPixelsOfItem = std::int64_t{1} << 19;
+constexpr int kItemsOfThread = 4;
 
-// Returns a power of two: rows of which all channels take at most kStripBytes, but at least kRowsOfItem.
+// Returns a power of two: rows of which all channels take at most kStripBytes, but at least kFewestRows.
 int rows_of_strip(int columns, std::size_t channels) {
   int rows = kMostStripRows;
-  while (rows > kRowsOfItem &&
+  while (rows > kFewestRows &&
          std::int64_t{rows} * columns * static_cast<std::int64_t>(channels * 4) > kStripBytes)
+    rows /= 2;
+  return rows;
+}
+
+// Returns the rows that a thread makes at once: as many as the sampler likes, but so few that all threads have work and an
+// interruption is soon seen.
+int rows_of_item(const map::MapSampler& sampler, int strip_rows, int threads) {
+  int rows = sampler.rows_at_once();
+  while (rows > kFewestRows && (rows * kItemsOfThread * threads > strip_rows ||
+                                std::int64_t{rows} * sampler.grid().columns > kMostPixelsOfItem))
     rows /= 2;
   return rows;
 }
@@ -130,6 +142,7 @@ int MapMaker::make_strips(const base::Shard& shard) {
   const InterruptGuard guard;
   const auto begin = static_cast<int>(shard.begin(strips_));
   const auto end = static_cast<int>(shard.end(strips_));
+  const int item_rows = rows_of_item(sampler, rows_, pool.threads());
   for (int strip = begin; strip < end; ++strip) {
     if (exists(strip)) continue;
     const int first = strip * rows_;
@@ -138,13 +151,13 @@ int MapMaker::make_strips(const base::Shard& shard) {
     map::MapRows all(info_.bands.size(), std::vector<float>(columns * static_cast<std::size_t>(rows)));
     map::MapGround ground;
     std::mutex mutex;
-    const auto items = static_cast<std::size_t>((rows + kRowsOfItem - 1) / kRowsOfItem);
+    const auto items = static_cast<std::size_t>((rows + item_rows - 1) / item_rows);
     std::size_t done = 0;
     pool.run(items, [&](std::size_t item) {
       InterruptGuard::check();
-      const int row = static_cast<int>(item) * kRowsOfItem;
+      const int row = static_cast<int>(item) * item_rows;
       map::MapGround own;
-      const map::MapRows part = sampler.rows(first + row, std::min(kRowsOfItem, rows - row), own);
+      const map::MapRows part = sampler.rows(first + row, std::min(item_rows, rows - row), own);
       for (std::size_t c = 0; c < all.size(); ++c)
         std::ranges::copy(
             part[c], all[c].begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * columns));

@@ -127,6 +127,7 @@ mars::RasterInfo raster_info(const MapRequest& request, const mars::MapCrs& crs,
   }
   if (meta.resampling.posts > 0)
     text["VPE_PLANET_RESAMPLING_MAX_M"] = base::format_significant(meta.resampling.max_m, 6);
+  if (!request.image_layers.empty()) text["VPE_IMAGE_LAYERS"] = request.image_layers;
   if (wants(request, map::MapBand::shade)) text["VPE_SHADE"] = request.shade.empty() ? "315,45" : request.shade;
   if (wants(request, map::MapBand::sun) || wants(request, map::MapBand::sun_hours))
     text["VPE_SUN"] = request.sun;

@@ -20,9 +20,10 @@ struct MapRequest {
   map::PlaceBox box;
   double spacing_m = 0;
   std::vector<map::MapBand> bands;
-  std::string shade;  // AZIMUTH,ELEVATION in degrees; empty: the default
-  std::string sun;    // date, season, or AZIMUTH,ELEVATION in degrees; empty: none
-  bool year = false;  // sun_hours are the mean of sols through a year
+  std::string shade;         // AZIMUTH,ELEVATION in degrees; empty: the default
+  std::string sun;           // date, season, or AZIMUTH,ELEVATION in degrees; empty: none
+  std::string image_layers;  // of the band colour, as the setting image.layers; empty: as the planet was built
+  bool year = false;         // sun_hours are the mean of sols through a year
 };
 
 // Returns the light of a request at the middle of its box. Throws UsageError for texts that are none, for a band without

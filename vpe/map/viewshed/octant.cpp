@@ -13,7 +13,7 @@ namespace vpe::map {
 
 namespace {
 
-constexpr int kRaysPerFan = 128;
+constexpr int kRaysPerFan = 512;
 constexpr int kFewestRays = 8;
 // The ray to a post may pass a ridge between the rays on its sides where it is higher than under both.
 constexpr float kDoubt = 1.0F;  // in differences of their horizons, from their mean
