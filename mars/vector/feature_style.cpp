@@ -27,6 +27,8 @@ class StyleReader {
   FeatureStyle read() {
     read_style_string();
     read_simplestyle();
+    read_scales();
+    if (const std::string text = attribute("legend"); !text.empty()) style_.legend = text;
     return style_;
   }
 
@@ -138,6 +140,21 @@ class StyleReader {
       style_.marker = colour("marker-color", text);
     if (const std::string text = attribute("marker-size"); !text.empty())
       style_.marker_size = marker_size(text);
+  }
+
+  double scale(const std::string& name, double unsaid) const {
+    const std::string text = attribute(name);
+    if (text.empty()) return unsaid;
+    const auto value = vpe::base::parse_number(text);
+    if (!value || !(*value >= 0)) fail(name, text, "metres of ground a pixel, 0 or more");
+    return *value;
+  }
+
+  void read_scales() {
+    style_.min_scale_m = scale("min-scale", defaults_.min_scale_m);
+    style_.max_scale_m = scale("max-scale", defaults_.max_scale_m);
+    if (!(style_.max_scale_m > style_.min_scale_m))
+      fail("max-scale", attribute("max-scale"), "more metres a pixel than min-scale");
   }
 
   // Reads a colour and its opacity, each of which may be given alone.

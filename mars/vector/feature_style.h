@@ -1,6 +1,7 @@
 // Describes how a feature is drawn, by what its file says.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ struct FeatureStyle {
   std::string label;  // empty: none
   StyleColour label_colour;
   StyleLength label_size{14, false};  // height of the letters
+  // The feature is drawn where a pixel covers at least min_scale_m and less than max_scale_m metres of ground.
+  double min_scale_m = 0;
+  double max_scale_m = std::numeric_limits<double>::infinity();
+  std::string legend;  // what a legend says of it; empty: the layer's name
 
   bool operator==(const FeatureStyle&) const = default;
 };
@@ -44,7 +49,8 @@ struct FeatureStyle {
 // Returns the style of a feature of a layer: `defaults`, changed by its OGR style string, and then by its attributes
 // of the Simplestyle specification 1.1.0: title (the label), stroke, stroke-width, stroke-opacity, fill, fill-opacity,
 // marker-color, marker-size (small, medium, large: 6, 8 and 12 pixels; or a number of pixels). Colours there are #rgb
-// or #rrggbb; the # may be left out. Where `defaults` have no fill, the opacity of one is 0.6. Attributes without a value change nothing.
+// or #rrggbb; the # may be left out. Where `defaults` have no fill, the opacity of one is 0.6. Three attributes are of
+// this program: min-scale and max-scale, metres a pixel, and legend. Attributes without a value change nothing.
 //
 // Reads of style strings (OGR Feature Style Specification): PEN(c, w, p), BRUSH(fc), SYMBOL(c, s),
 // LABEL(c, s, t), and id ogr-pen-1 and ogr-brush-1, which draw nothing. Other tools and parameters are left out.

@@ -14,9 +14,9 @@
 namespace overlay_test {
 namespace {
 
+using mars::AreaIndex;
 using mars::Shape;
 using mars::ShapeKind;
-using vpe::overlay::AreaIndex;
 using vpe::overlay::DrapedRun;
 using vpe::overlay::GroundFeatures;
 using vpe::overlay::VisibleTerrain;

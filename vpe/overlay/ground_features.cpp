@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "mars/geodesy/sphere.h"
-#include "mars/vector/ring_longitudes.h"
 
 namespace vpe::overlay {
 namespace {
 
 constexpr std::size_t kVerticesOfPiece = 32;
-constexpr std::size_t kMostBins = 4096;
-constexpr std::size_t kEdgesOfBin = 8;
 // Styles that are looked through for an equal one.
 constexpr std::size_t kComparedStyles = 64;
 
@@ -25,60 +21,6 @@ double length_rad(glm::dvec2 from, glm::dvec2 to) {
 }
 
 }  // namespace
-
-AreaIndex::AreaIndex(const mars::Shape& shape) {
-  low_ = high_ = shape.rings.at(0).at(0);
-  std::size_t count = 0;
-  for (const auto& ring : shape.rings) {
-    for (const glm::dvec2& p : ring) {
-      low_ = glm::min(low_, p);
-      high_ = glm::max(high_, p);
-    }
-    count += ring.size();
-    holds_north_ = holds_north_ != (mars::pole_of(ring) == mars::RingPole::north);
-    if (mars::pole_of(ring) == mars::RingPole::north) high_.y = 90;
-    if (mars::pole_of(ring) == mars::RingPole::south) low_.y = -90;
-  }
-  const std::size_t bins = std::clamp<std::size_t>(count / kEdgesOfBin, 1, kMostBins);
-  first_.assign(bins + 1, 0);
-  const auto each_edge = [&](const auto& visit) {
-    for (const auto& ring : shape.rings) {
-      for (std::size_t i = 1; i < ring.size(); ++i) {
-        const std::size_t begin = bin_of(std::min(ring[i - 1].x, ring[i].x));
-        const std::size_t end = bin_of(std::max(ring[i - 1].x, ring[i].x));
-        for (std::size_t bin = begin; bin <= end; ++bin) visit(bin, Edge{ring[i - 1], ring[i]});
-      }
-    }
-  };
-  each_edge([&](std::size_t bin, const Edge&) { ++first_[bin + 1]; });
-  for (std::size_t bin = 0; bin < bins; ++bin) first_[bin + 1] += first_[bin];
-  edges_.resize(first_.back());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  each_edge([&](std::size_t bin, const Edge& edge) { edges_[next[bin]++] = edge; });
-}
-
-std::size_t AreaIndex::bin_of(double lon_deg) const {
-  const std::size_t bins = first_.size() - 1;
-  const double share = high_.x > low_.x ? (lon_deg - low_.x) / (high_.x - low_.x) : 0.0;
-  return std::min(bins - 1, static_cast<std::size_t>(std::max(0.0, share * static_cast<double>(bins))));
-}
-
-bool AreaIndex::contains(glm::dvec2 place_deg) const {
-  if (place_deg.y < low_.y || place_deg.y > high_.y) return false;
-  bool inside = holds_north_;
-  // Rings that go around the planet several times are counted in each turn.
-  const double lon = low_.x + (place_deg.x - low_.x) - 360 * std::floor((place_deg.x - low_.x) / 360);
-  for (double x = lon; x <= high_.x; x += 360) {
-    const std::size_t bin = bin_of(x);
-    for (std::uint32_t k = first_[bin]; k < first_[bin + 1]; ++k) {
-      const Edge& e = edges_[k];
-      if ((e.from.x <= x) == (e.to.x <= x)) continue;
-      const double lat = e.from.y + (e.to.y - e.from.y) * (x - e.from.x) / (e.to.x - e.from.x);
-      if (lat > place_deg.y) inside = !inside;
-    }
-  }
-  return inside;
-}
 
 GroundFeatures::GroundFeatures(mars::FeatureLayer layer, const mars::FeatureStyle& defaults)
     : layer_(std::move(layer)), defaults_(defaults) {
@@ -95,11 +37,15 @@ GroundFeatures::GroundFeatures(mars::FeatureLayer layer, const mars::FeatureStyl
         points_.push_back({f, shape.rings.at(0).at(0)});
         continue;
       }
-      if (shape.kind == mars::ShapeKind::polygon && is_filled) areas_.push_back({f, AreaIndex(shape)});
+      if (shape.kind == mars::ShapeKind::polygon && is_filled) areas_.push_back({f, mars::AreaIndex(shape)});
       if (!has_lines) continue;
       for (const auto& ring : shape.rings) add_line(f, ring);
     }
   }
+  std::vector<AreaTree::Extent> extents;
+  extents.reserve(areas_.size());
+  for (const Area& area : areas_) extents.push_back({area.index.low_deg(), area.index.high_deg()});
+  area_tree_ = AreaTree(extents);
 }
 
 std::uint32_t GroundFeatures::keep(mars::FeatureStyle style) {
@@ -137,8 +83,8 @@ std::string GroundFeatures::label(std::uint32_t feature) const {
 }
 
 std::size_t GroundFeatures::bytes() const {
-  std::size_t total = sizeof(*this) + pieces_.capacity() * sizeof(Piece) + points_.capacity() * sizeof(Point) +
-                      styles_.capacity() * sizeof(mars::FeatureStyle) +
+  std::size_t total = sizeof(*this) + area_tree_.bytes() + pieces_.capacity() * sizeof(Piece) +
+                      points_.capacity() * sizeof(Point) + styles_.capacity() * sizeof(mars::FeatureStyle) +
                       style_of_.capacity() * sizeof(std::uint32_t);
   for (const mars::Feature& feature : layer_.features) {
     total += sizeof(feature) + feature.values.capacity() * sizeof(mars::FieldValue);

@@ -16,35 +16,12 @@
 #include <string>
 #include <vector>
 
+#include "mars/vector/area_index.h"
 #include "mars/vector/feature.h"
 #include "mars/vector/feature_style.h"
+#include "vpe/overlay/features/area_tree.h"
 
 namespace vpe::overlay {
-
-// Tells whether places lie within a polygon: after an odd number of its rings, as seen from the north pole.
-class AreaIndex {
- public:
-  // Expects a polygon with closed rings.
-  explicit AreaIndex(const mars::Shape& shape);
-
-  bool contains(glm::dvec2 place_deg) const;
-  // Return the extent; the difference of longitudes is at most 360, but for rings that go around the planet several times.
-  glm::dvec2 low_deg() const { return low_; }
-  glm::dvec2 high_deg() const { return high_; }
-
- private:
-  struct Edge {
-    glm::dvec2 from;
-    glm::dvec2 to;
-  };
-  std::size_t bin_of(double lon_deg) const;
-
-  glm::dvec2 low_{0, 0};
-  glm::dvec2 high_{0, 0};
-  bool holds_north_ = false;
-  std::vector<std::uint32_t> first_;  // of each bin of longitude, and the end
-  std::vector<Edge> edges_;           // by bins; an edge is in each bin that it meets
-};
 
 // Holds a layer and all that is computed of it once. Any number of threads may read it.
 class GroundFeatures {
@@ -68,7 +45,7 @@ class GroundFeatures {
   };
   struct Area {
     std::uint32_t feature = 0;
-    AreaIndex index;
+    mars::AreaIndex index;
   };
 
   const mars::FeatureLayer& layer() const { return layer_; }
@@ -77,6 +54,12 @@ class GroundFeatures {
   const std::vector<Area>& areas() const { return areas_; }  // with a fill
   // Returns the style of a feature without its label.
   const mars::FeatureStyle& style(std::uint32_t feature) const { return styles_[style_of_[feature]]; }
+  // Returns the number of a feature's style among the different ones, and a style by its number.
+  std::uint32_t style_number(std::uint32_t feature) const { return style_of_[feature]; }
+  const mars::FeatureStyle& style_of_number(std::uint32_t number) const { return styles_[number]; }
+  std::size_t styles() const { return styles_.size(); }
+  // Returns the extents of areas(), by their numbers.
+  const AreaTree& area_tree() const { return area_tree_; }
   // Returns whether some feature has a label, and the label of one.
   bool has_labels() const { return has_labels_; }
   std::string label(std::uint32_t feature) const;
@@ -93,6 +76,7 @@ class GroundFeatures {
   std::vector<Piece> pieces_;
   std::vector<Point> points_;
   std::vector<Area> areas_;
+  AreaTree area_tree_;
   bool has_labels_ = false;
 };
 

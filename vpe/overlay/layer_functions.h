@@ -2,6 +2,10 @@
 // not find room.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "vpe/overlay/label_layout.h"
 #include "vpe/overlay/visible_terrain.h"
 
@@ -21,8 +25,30 @@ std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& 
 // Draws labels into gaps that it cuts into the lines. Keeps a distance between labels with the same text.
 void draw_labels(LabelLayout& layout, const std::vector<LineLabel>& labels);
 
-// Draws the layers of vector features: areas, lines, points; then their labels, as far as there is room.
-void draw_layers(LabelLayout& layout, const VisibleTerrain& terrain, core::HiddenLines hidden);
+class ImageSight;
+
+// Draws the layers of vector features. Keeps references.
+class LayersDrawing {
+ public:
+  // Draws areas, lines and points of each layer.
+  LayersDrawing(LabelLayout& layout, const VisibleTerrain& terrain, core::HiddenLines hidden);
+  ~LayersDrawing();
+  LayersDrawing(const LayersDrawing&) = delete;
+  LayersDrawing& operator=(const LayersDrawing&) = delete;
+
+  // Draws what the colours and patterns in the image stand for (features/layers_legend.h).
+  void draw_legend() const;
+  // Draws labels, as far as there is room.
+  void draw_labels() const;
+
+ private:
+  class LayerDrawer;
+  LabelLayout& layout_;
+  const std::vector<SceneLayer>& layers_;
+  std::unique_ptr<ImageSight> sight_;
+  std::vector<std::unique_ptr<LayerDrawer>> drawers_;
+};
+
 void draw_title(LabelLayout& layout, const std::string& title);
 void draw_time(LabelLayout& layout, double time_s);
 void draw_solar_time(LabelLayout& layout, const SolarTime& solar);

@@ -48,7 +48,8 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   Canvas canvas(size.x, size.y);
   LabelLayout layout(canvas);
   std::vector<LineLabel> labels;
-  if (!scene.layers.empty()) draw_layers(layout, *terrain, overlays.hidden_lines);
+  std::optional<LayersDrawing> layers;
+  if (!scene.layers.empty()) layers.emplace(layout, *terrain, overlays.hidden_lines);
   if (overlays.contours && scene.contours) {
     const std::vector<float> range_m = ranges_of_same_ground(*terrain, *scene.contours);
     Scene finer = scene;
@@ -69,6 +70,8 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   if (overlays.north_arrow) draw_north_arrow(layout, *terrain);
   if (overlays.time_code == core::TimeCode::kFlight) draw_time(layout, scene.time_s);
   if (overlays.time_code == core::TimeCode::kSolar && scene.solar) draw_solar_time(layout, *scene.solar);
+  if (layers && overlays.layers_legend) layers->draw_legend();
+  if (layers) layers->draw_labels();
   if (!overlays.names.empty()) draw_names(layout, *terrain, overlays.distances);
   draw_labels(layout, labels);
   Layer layer = canvas.layer();

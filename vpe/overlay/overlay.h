@@ -108,6 +108,10 @@ inline constexpr double kHiddenShare = 0.01;
 // - Neither crosses an edge where near terrain hides far terrain. Lines closer together than 5 px (at 720 rows)
 //   fade, and disappear at 2.
 // - legend: only if the appearance shows elevation, slope or aspect as colours.
+// - layers: areas, lines and points of each layer, the lowest first; labels beside points, and at the longest part of a line that
+//   is seen, as far as there is room beside the other overlays.
+// - layers_legend: an entry for each different style that the image shows (vpe/overlay/features/layers_legend.h), at the upper
+//   left, or where there is room.
 // - scale_bar: a length on the terrain at the image's centre, across the line of sight; absent if the centre
 //   shows sky.
 // - north_arrow: direction at the image's centre, on a disc that lies on the terrain but is tilted by at least

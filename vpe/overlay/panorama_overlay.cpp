@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "vpe/overlay/compass_style.h"
 #include "vpe/overlay/layer_functions.h"
@@ -37,7 +38,9 @@ class PanoramaLayout {
     if (overlays_.compass != CompassStrip::kOff) compass();
     if (!overlays_.title.empty()) title();
     if (overlays_.legend) legend();
+    if (!scene_.layers_legend.empty()) layers_legend();
     names();
+    labels();
     // Figures along the horizon come last: they use the room that is left.
     for (const Mark& m : figures_) label(m);
     return std::move(sprites_);
@@ -161,6 +164,41 @@ class PanoramaLayout {
     furniture({left, top, size_.x, bottom_px_}, [scene](LabelLayout& layout) { draw_legend(layout, scene); });
   }
 
+  void layers_legend() {
+    const auto legend = std::make_shared<const LayersLegend>(scene_.layers_legend, ruler_, unit_);
+    const auto site = legend->find_site({0, top_px_, size_.x, bottom_px_},
+                                        [this](const Box& box) { return sprites_.is_free(box); });
+    if (!site) return;
+    const Box box{site->corner.x, site->corner.y, site->corner.x + site->plan.size.width,
+                  site->corner.y + site->plan.size.height};
+    sprites_.take(box.grown(px(4)));
+    sprites_.add(box, [legend, plan = site->plan](Canvas& canvas, glm::dvec2) {
+      legend->draw(canvas, plan, {0, 0});
+    });
+  }
+
+  void labels() {
+    constexpr std::size_t kMostLayerLabels = 1000;
+    std::size_t count = 0;
+    for (const PanoramaLabel& own : scene_.labels) {
+      const TextSize size = ruler_.measure(own.text, own.font);
+      const double beside = 0.5 * size.width + own.radius_px + px(3);
+      const double over = 0.5 * size.height + own.radius_px;
+      for (const glm::dvec2& offset :
+           {glm::dvec2{beside, 0}, glm::dvec2{-beside, 0}, glm::dvec2{0, -over}, glm::dvec2{0, over}}) {
+        const glm::dvec2 centre = own.at_px + offset;
+        const Box box = Box::about(centre, size);
+        if (!sprites_.is_free(box)) continue;
+        sprites_.take(box.grown(px(2)));
+        sprites_.add(halo(box), [own, centre](Canvas& canvas, glm::dvec2 corner) {
+          canvas.text(own.text, centre - corner, 0, {own.font, own.ink, {0, 0, 0, kShade.a * own.ink.a}});
+        });
+        if (++count == kMostLayerLabels) return;
+        break;
+      }
+    }
+  }
+
   void names() {
     constexpr double kSmallestName_px = 4;
     constexpr std::size_t kMost = 1000;
@@ -278,7 +316,6 @@ double panorama_unit(const PanoramaScene& scene) {
 std::string not_for_panoramas(const core::Overlays& overlays) {
   if (overlays.graticule) return "overlay.graticule: lines on the terrain are not drawn over panoramas";
   if (overlays.contours) return "overlay.contours: lines on the terrain are not drawn over panoramas";
-  if (!overlays.layers.empty()) return "overlay.layers: features are not drawn over panoramas";
   if (overlays.scale_bar)
     return "overlay.scale: a panorama has no centre with one scale; see overlay.distances";
   if (overlays.north_arrow) return "overlay.north: a panorama shows all directions; see overlay.compass";

@@ -15,6 +15,7 @@
 
 #include "vpe/core/appearance/appearance.h"
 #include "vpe/core/appearance/overlays.h"
+#include "vpe/overlay/features/layers_legend.h"
 #include "vpe/overlay/sprites.h"
 
 namespace vpe::overlay {
@@ -27,6 +28,15 @@ struct PanoramaName {
   double elevation_deg = 0;
   double distance_m = 0;  // in a straight line
   double diameter_m = 0;  // 0 = unknown
+};
+
+// Holds the label of a feature of a vector layer.
+struct PanoramaLabel {
+  std::string text;
+  glm::dvec2 at_px{0, 0};
+  double radius_px = 0;  // of what stands there
+  Font font{14, false};
+  Ink ink{1, 1, 1, 1};
 };
 
 struct PanoramaScene {
@@ -42,7 +52,9 @@ struct PanoramaScene {
   std::function<std::optional<glm::dvec2>(double azimuth_deg, double elevation_deg)> place;
   core::Appearance appearance;  // for the legend
   bool has_imagery = true;
-  std::vector<PanoramaName> names;  // visible ones, in any order
+  std::vector<PanoramaName> names;       // visible ones, in any order
+  std::vector<PanoramaLabel> labels;     // earlier ones have priority
+  std::vector<LegendRow> layers_legend;  // of Overlays::layers_legend
 };
 
 double panorama_unit(const PanoramaScene& scene);
@@ -50,8 +62,8 @@ double panorama_unit(const PanoramaScene& scene);
 // Returns which of the overlays cannot be drawn over a panorama, with the reason, or "" if all can.
 std::string not_for_panoramas(const core::Overlays& overlays);
 
-// Lays out the overlays. No text lies over another, nor over a leader or dot. Throws std::runtime_error if
-// Cairo fails.
+// Lays out all overlays but the features of vector layers themselves (features/panorama_lines.h, area_pixels.h). No text
+// lies over another, nor over a leader or dot. Throws std::runtime_error if Cairo fails.
 //
 // - compass: as in other images. Along an edge or the horizon, marks are in the columns that their azimuths
 //   have on the horizon.
@@ -59,7 +71,8 @@ std::string not_for_panoramas(const core::Overlays& overlays);
 //   720 rows) are left out. Each has a dot, a vertical leader, and its text in the first of several rows above
 //   that has room, or below if none above has. Rows that cover figures of a compass along the horizon are tried
 //   last. At the ends of an image of less than 360 degrees texts move inwards.
-// - title: at the top in the middle. legend: lower right.
+// - title: at the top in the middle. legend: lower right. Legend of layers: upper left, or where there is room.
+// - labels: beside their places, after names, as far as there is room.
 SpriteLayer lay_out_panorama(const core::Overlays& overlays, const PanoramaScene& scene);
 
 }  // namespace vpe::overlay

@@ -145,6 +145,19 @@ TEST(FeatureStyle, ColoursAndLengths) {
     EXPECT_FALSE(mars::parse_style_length(text)) << text;
 }
 
+TEST(FeatureStyle, HasRangesOfScalesAndTextsOfLegends) {
+  const FeatureStyle style =
+      style_of(layer_of({{"min-scale", 2.5}, {"max-scale", "40"}, {"legend", "Basalt"}}));
+  EXPECT_EQ(style.min_scale_m, 2.5);
+  EXPECT_EQ(style.max_scale_m, 40);
+  EXPECT_EQ(style.legend, "Basalt");
+  EXPECT_EQ(style_of(layer_of({{"min-scale", ""}})), FeatureStyle{});
+  expect_words(style_error(layer_of({{"min-scale", "-1"}})), {"tracks", "17", "min-scale", "-1", "metres"});
+  expect_words(style_error(layer_of({{"max-scale", "far"}})), {"max-scale", "far"});
+  expect_words(style_error(layer_of({{"min-scale", 5.0}, {"max-scale", 5.0}})), {"max-scale", "min-scale"});
+  expect_words(style_error(layer_of({{"max-scale", "0"}})), {"max-scale"});
+}
+
 TEST(FeatureStyle, TakesStyleStringsApart) {
   const auto tools = mars::parse_ogr_style(R"(pen(W: 2px , C:"#000000");label())");
   ASSERT_TRUE(tools);

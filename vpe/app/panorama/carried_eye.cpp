@@ -171,6 +171,12 @@ std::vector<Piece> CarriedEye::left_pieces(const std::vector<Strip>& columns) co
   return pieces;
 }
 
+std::vector<Piece> CarriedEye::right_pieces(const Strip& strip) const {
+  std::vector<Piece> pieces = panorama::eye_pieces_of(map_, viewpoint_, bands_, panorama::Eye::kRight, strip);
+  for (Piece& piece : pieces) piece.x -= strip.x;
+  return pieces;
+}
+
 RightEye CarriedEye::carry(const core::Frame& left, const Strip& strip, core::PixelRenderer& renderer,
                            const core::DrawRequest& request, base::ThreadPool& pool,
                            const std::function<void(double)>& show) const {
@@ -182,17 +188,20 @@ RightEye CarriedEye::carry(const core::Frame& left, const Strip& strip, core::Pi
   RightEye out;
   out.added_px = carried.added_px;
   out.frame = {carried.width, carried.height, std::move(carried.colour), {}};
-  const std::vector<Piece> pieces =
-      panorama::eye_pieces_of(map_, viewpoint_, bands_, panorama::Eye::kRight, strip);
+  const std::vector<Piece> pieces = right_pieces(strip);
   const auto stride = static_cast<std::size_t>(strip.width);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     show(static_cast<double>(k) / static_cast<double>(pieces.size()));
     const std::size_t at =
-        static_cast<std::size_t>(pieces[k].y) * stride + static_cast<std::size_t>(pieces[k].x - strip.x);
+        static_cast<std::size_t>(pieces[k].y) * stride + static_cast<std::size_t>(pieces[k].x);
     const core::DrawResult result = draw_open(pieces[k], carried, at, stride, renderer, request, out.frame);
     out.failures.insert(out.failures.end(), result.failures.begin(), result.failures.end());
     add(out.drawn, result);
   }
+  for (std::size_t n = 0; n < carried.range_m.size(); ++n) {
+    if (carried.origin[n] == warp::Origin::kOpen) carried.range_m[n] = std::numeric_limits<float>::quiet_NaN();
+  }
+  out.frame.range_m = std::move(carried.range_m);
   return out;
 }
 

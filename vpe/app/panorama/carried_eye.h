@@ -15,7 +15,7 @@ namespace vpe::app {
 
 // Holds the right eye's image of a strip.
 struct RightEye {
-  core::Frame frame;
+  core::Frame frame;  // ranges are NaN where pixels were not carried
   // Holds the largest bounds of the certificates of the pixels that were drawn, and missing tiles; no frame.
   core::DrawResult drawn;
   std::vector<std::string> failures;
@@ -42,6 +42,8 @@ class CarriedEye {
   std::vector<panorama::Strip> columns_for(const panorama::Strip& strip) const;
   // Returns the pieces of these columns; x is counted from the first of them.
   std::vector<panorama::Piece> left_pieces(const std::vector<panorama::Strip>& columns) const;
+  // Returns the pieces of a strip of the right eye's image; x is counted from the strip's first column.
+  std::vector<panorama::Piece> right_pieces(const panorama::Strip& strip) const;
 
   // Carries the left eye's image of columns_for(strip), and draws what is left. `request` has settings, sun and interest.
   // Reports the share that is done in `show`. Throws what the renderer throws.

@@ -18,6 +18,7 @@
 #include "vpe/app/panorama/horizon_files.h"
 #include "vpe/app/panorama/horizon_objects.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/scene/scene_library.h"
@@ -73,10 +74,8 @@ std::vector<double> azimuths_of(const HorizonArguments& a) {
   return out;
 }
 
-mars::LonLat place_of(const HorizonArguments& a) { return parse_place(a.at, "--at "); }
-
 void check(const HorizonArguments& a) {
-  place_of(a);
+  (void)given_place("--at", a.at);
   if (a.height_m.has_value() == a.altitude_m.has_value())
     throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
   if (!(a.to_deg > a.from_deg))
@@ -162,7 +161,7 @@ struct Camera {
 
 Camera camera_of(const HorizonArguments& a, const paging::Surface& surface, const paging::PlanetMeta& meta,
                  bool quiet) {
-  const mars::LonLat place = planetocentric(place_of(a), a.latitude, meta, quiet);
+  const mars::LonLat place = place_on(given_place("--at", a.at), "--at", a.latitude, meta, quiet);
   const double ground_m = surface.at(mars::direction(place)).height_m;
   Camera camera{{place.lon_deg, place.lat_deg, 0, 0, 0, 0},
                 a.height_m ? *a.height_m : *a.altitude_m - ground_m};
@@ -323,7 +322,8 @@ void add_horizon(CLI::App& program, Common& common) {
       program, "horizon", "Compute the skyline, the farthest visible ground and hidden features of a place",
       common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees")->required();
+  command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees, or the name of its place")
+      ->required();
   add_latitude_option(*command, arguments->latitude);
   command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0, 1e10));

@@ -23,8 +23,10 @@
 #include "vpe/app/panorama/panorama_scene.h"
 #include "vpe/app/panorama/panorama_stereo.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/layer_check.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -240,12 +242,14 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   check_identity(request, meta.identity);
   request.identity = meta.identity;
   note_illustration(meta, common.quiet);
+  require_layers(request.settings.values(), *planet);
   if (!common.quiet) {
     for (const std::string& text : plan.rounded) std::fprintf(stderr, "vpe: %s\n", text.c_str());
   }
   mars::Pose& camera = request.camera;
-  camera.lat_deg =
-      planetocentric({camera.lon_deg, camera.lat_deg}, request.latitude, meta, common.quiet).lat_deg;
+  camera.lat_deg = place_on({{camera.lon_deg, camera.lat_deg}, request.place_name, 0}, "--at", request.latitude,
+                            meta, common.quiet)
+                       .lat_deg;
   make_interest_planetocentric(request.interest, request.latitude, meta);
   const Ground ground = ground_below(planet, request);
   place_camera(request, ground);
@@ -262,7 +266,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   RendererSource renderers(request, common, planet);
   resolve_eyes(request, plan, planet, draw_request, renderers, memory_mb);
   times.start = elapsed_s(start);
-  PanoramaOverlays overlays(request, plan.map, planet, pool, memory_bytes(common) / 2);
+  PanoramaOverlays overlays(request, plan.map, planet, pool, static_cast<std::size_t>(memory_mb) << 19);
   PanoramaMaker maker(request, plan,
                       {draw_request, fingerprint_of(request, plan, draw_request, planet->radius_m()), planet,
                        [&](int share_mb) { return renderers.make(share_mb); }, memory_mb},
@@ -301,7 +305,7 @@ void add_panorama(CLI::App& program, Common& common) {
   CLI::App* command = add_command(
       program, "panorama", "Draw a panorama; an interrupted run continues where it was stopped", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees");
+  command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees, or the name of its place");
   add_latitude_option(*command, arguments->latitude);
   command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0, 1e10));

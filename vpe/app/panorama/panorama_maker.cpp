@@ -211,11 +211,16 @@ std::vector<std::size_t> PanoramaMaker::order() const {
 
 void PanoramaMaker::prepare() {
   overlays_.prepare();
-  const int surface_mb = layers_memory_mb(request_, plan_, scene_.memory_mb);
+  const int surface_mb = layers_memory_mb(request_, plan_, memory_mb());
   if (surface_mb > 0) {
     surface_ = std::make_unique<paging::Surface>(scene_.planet, static_cast<std::size_t>(surface_mb) << 20);
   }
-  renderer_ = scene_.make_renderer(renderer_memory_mb(request_, plan_, scene_.memory_mb));
+  renderer_ = scene_.make_renderer(renderer_memory_mb(request_, plan_, memory_mb()));
+}
+
+// Returns what is left beside vector layers.
+int PanoramaMaker::memory_mb() const {
+  return std::max(scene_.memory_mb / 4, scene_.memory_mb - static_cast<int>(overlays_.held_bytes() >> 20));
 }
 
 panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, PanoramaTimes& times) {
@@ -281,10 +286,37 @@ panorama::StripFile PanoramaMaker::write(std::size_t n, const Canvas& canvas, Pa
   return std::move(*made);
 }
 
-// Draws the same overlays over both eyes of a pair, as if they were infinitely far away.
+// Lays areas of vector layers over columns of one eye's image with ranges, whose pieces have its pixels.
+void PanoramaMaker::fill_areas(core::Frame& frame, const std::vector<Piece>& pieces) {
+  const auto stride = static_cast<std::size_t>(frame.width);
+  for (const Piece& piece : pieces)
+    overlays_.fill(piece.view,
+                   {frame.colour, frame.range_m,
+                    static_cast<std::size_t>(piece.y) * stride + static_cast<std::size_t>(piece.x), stride});
+}
+
+// Draws lines of vector layers over columns [x, x + width) of an eye's image, which are columns of `pixels` from `begin` on.
+void PanoramaMaker::drape_columns(panorama::Eye eye, std::int64_t x, std::int64_t width,
+                                  std::vector<base::Rgb>& pixels, std::int64_t stride, std::int64_t begin) {
+  std::vector<base::Rgb> columns;
+  const std::int64_t height = plan_.map.height_px;
+  for (std::int64_t y = 0; y < height; ++y)
+    columns.insert(columns.end(), pixels.begin() + y * stride + begin,
+                   pixels.begin() + y * stride + begin + width);
+  overlays_.drape(eye, {x, 0, width, height, columns});
+  for (std::int64_t y = 0; y < height; ++y)
+    std::copy_n(columns.begin() + y * width, width, pixels.begin() + y * stride + begin);
+}
+
+// Draws the same overlays over both eyes of a pair, as if they were infinitely far away. Lines of vector layers lie where each
+// eye sees the ground; in red-cyan they are drawn before the eyes are mixed.
 void PanoramaMaker::lay_overlays(Canvas& canvas) {
   const bool is_pair = request_.stereo && !plan_.is_red_cyan;
-  if (!is_pair) return overlays_.lay({canvas.x, 0, canvas.width, canvas.height, canvas.colour});
+  if (!is_pair) {
+    if (!request_.stereo)
+      overlays_.drape(std::nullopt, {canvas.x, 0, canvas.width, canvas.height, canvas.colour});
+    return overlays_.lay({canvas.x, 0, canvas.width, canvas.height, canvas.colour});
+  }
   std::vector<base::Rgb> half;  // the part of one eye's image in this strip
   for (std::int64_t y = 0; y < plan_.size.height_px; y += plan_.map.height_px) {
     for (std::int64_t x = 0; x < plan_.size.width_px; x += plan_.map.width_px) {
@@ -300,6 +332,8 @@ void PanoramaMaker::lay_overlays(Canvas& canvas) {
         const auto pixels = row_of(row);
         half.insert(half.end(), pixels.begin(), pixels.end());
       }
+      overlays_.drape(x > 0 || y > 0 ? panorama::Eye::kRight : panorama::Eye::kLeft,
+                      {begin - x, 0, width, plan_.map.height_px, half});
       overlays_.lay({begin - x, 0, width, plan_.map.height_px, half});
       for (std::int64_t row = 0; row < plan_.map.height_px; ++row)
         std::copy_n(half.begin() + row * width, width, row_of(row).begin());
@@ -324,9 +358,14 @@ void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::fun
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(pieces.size());
       show((begin + width * part) / strip.width);
-      if (k == of_left) left = canvas.colour;
+      if (k == of_left) {
+        left = canvas.colour;
+        drape_columns(panorama::Eye::kLeft, strip.x + begin, width, left, canvas.width, begin);
+      }
       draw(pieces[k], strip, canvas, times);
     }
+    if (is_mixed)
+      drape_columns(panorama::Eye::kRight, strip.x + begin, width, canvas.colour, canvas.width, begin);
     for (std::int64_t row = 0; row < canvas.height && is_mixed; ++row) {
       const auto columns = [&](std::vector<base::Rgb>& pixels) {
         return std::span<base::Rgb>(pixels).subspan(canvas.index(begin, row), static_cast<std::size_t>(width));
@@ -395,6 +434,14 @@ void PanoramaMaker::draw_carried(const Strip& strip, Canvas& canvas, const std::
   left_.keep({});
   RightEye right = carry(
       left, strip, canvas, [&](double part) { show(kOfDrawing + (1 - kOfDrawing) * part); }, times);
+  if (overlays_.has_areas()) {
+    fill_areas(left, carrier_->left_pieces({strip}));
+    fill_areas(right.frame, carrier_->right_pieces(strip));
+  }
+  if (plan_.is_red_cyan) {
+    drape_columns(panorama::Eye::kLeft, strip.x, strip.width, left.colour, left.width, 0);
+    drape_columns(panorama::Eye::kRight, strip.x, strip.width, right.frame.colour, strip.width, 0);
+  }
   const auto width = static_cast<std::size_t>(strip.width);
   for (std::int64_t y = 0; y < plan_.map.height_px; ++y) {
     const std::span<base::Rgb> of_left(
@@ -419,17 +466,29 @@ void PanoramaMaker::draw_carried_beside(const Strip& strip, Canvas& canvas,
                   &canvas.colour[canvas.index(to, y)]);
   };
   const std::int64_t of_left = std::clamp<std::int64_t>(plan_.map.width_px - strip.x, 0, strip.width);
-  if (of_left > 0) copy_rows(left_.join({{strip.x, static_cast<int>(of_left)}}, draw_columns), 0, of_left);
+  const auto fill = [&](core::Frame& image, const std::vector<Piece>& pieces) {
+    if (overlays_.has_areas()) fill_areas(image, pieces);
+  };
+  if (of_left > 0) {
+    const std::vector<Strip> columns{{strip.x, static_cast<int>(of_left)}};
+    core::Frame image = left_.join(columns, draw_columns);
+    fill(image, carrier_->left_pieces(columns));
+    copy_rows(image, 0, of_left);
+  }
   if (of_left == strip.width) return;
   const Strip right{strip.x + of_left - plan_.map.width_px, static_cast<int>(strip.width - of_left)};
   const core::Frame left = left_.join(carrier_->columns_for(right), draw_columns);
-  copy_rows(carry(left, right, canvas, show, times).frame, of_left, right.width);
+  RightEye carried = carry(left, right, canvas, show, times);
+  fill(carried.frame, carrier_->right_pieces(right));
+  copy_rows(carried.frame, of_left, right.width);
 }
 
 void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {
   const bool want_range = !request_.layers.empty();
-  const core::DrawResult result = draw_piece(piece, want_range, canvas, times);
-  const core::Frame& frame = result.frame;
+  core::DrawResult result = draw_piece(piece, want_range || overlays_.has_areas(), canvas, times);
+  core::Frame& frame = result.frame;
+  if (overlays_.has_areas())
+    overlays_.fill(piece.view, {frame.colour, frame.range_m, 0, static_cast<std::size_t>(frame.width)});
   for (int row = 0; row < piece.height; ++row) {
     const auto from = static_cast<std::size_t>(row + piece.margin_px) * static_cast<std::size_t>(frame.width) +
                       static_cast<std::size_t>(piece.margin_px);

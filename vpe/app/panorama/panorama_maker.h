@@ -101,6 +101,10 @@ class PanoramaMaker {
   void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                  PanoramaTimes& times);
   void lay_overlays(Canvas& canvas);
+  void fill_areas(core::Frame& frame, const std::vector<panorama::Piece>& pieces);
+  void drape_columns(panorama::Eye eye, std::int64_t x, std::int64_t width, std::vector<base::Rgb>& pixels,
+                     std::int64_t stride, std::int64_t begin);
+  int memory_mb() const;
   StripLayout layout(std::size_t n) const;
   panorama::Viewpoint viewpoint() const;
   void add_image(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;

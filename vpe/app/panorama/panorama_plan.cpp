@@ -49,6 +49,7 @@ std::string fingerprint_of(const PanoramaRequest& request, const PanoramaPlan& p
   digest.add(panorama::to_text(panorama::Sidecar{"", plan.map, std::nullopt}));
   digest.add(static_cast<std::int64_t>(plan.format == PanoramaFormat::kTiff));
   for (const panorama::Plane layer : request.layers) digest.add(panorama::info_of(layer).name);
+  if (!request.layers_checksum.empty()) digest.add("layers").add(request.layers_checksum);
   if (request.stereo) digest.add(recipe_json(request)["stereo"].dump());
   return digest.hex();
 }

@@ -149,6 +149,7 @@ nlohmann::ordered_json recipe_json(const PanoramaRequest& request) {
   out["memory_mb"] = request.memory_mb;
   out["allow_incomplete"] = request.allow_incomplete;
   if (!request.names_checksum.empty()) out["names_checksum"] = request.names_checksum;
+  if (!request.layers_checksum.empty()) out["layers_checksum"] = request.layers_checksum;
   if (!request.scene_checksum.empty()) out["scene_checksum"] = request.scene_checksum;
   nlohmann::ordered_json settings;
   for (const core::SettingInfo& info : core::Settings::list())
@@ -182,6 +183,7 @@ PanoramaRequest request_from_recipe(const json& from) {
   request.memory_mb = needed<int>(from, "memory_mb");
   request.allow_incomplete = needed<bool>(from, "allow_incomplete");
   request.names_checksum = find<std::string>(from, "names_checksum").value_or("");
+  request.layers_checksum = find<std::string>(from, "layers_checksum").value_or("");
   request.scene_checksum = find<std::string>(from, "scene_checksum").value_or("");
   for (const auto& [key, value] : object(from, "settings").items()) set_setting(request.settings, key, value);
   return request;

@@ -7,6 +7,7 @@
 
 #include "panorama/image/metadata_error.h"
 #include "vpe/app/cli/parsing.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/base/file.h"
 
 namespace vpe::app {
@@ -95,16 +96,17 @@ core::Settings settings_of(const PanoramaArguments& arguments, MapKind kind) {
 PanoramaRequest request_from_options(const PanoramaArguments& arguments, const Common& common) {
   if (arguments.at.empty() || arguments.output.empty())
     throw UsageError("--at LON,LAT and -o PANO are required, or --from-sidecar PANO.json");
-  const mars::LonLat place = parse_place(arguments.at, "--at ");
+  const GivenPlace given = given_place("--at", arguments.at);
   if (arguments.height_m.has_value() == arguments.altitude_m.has_value()) {
     throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
   }
   PanoramaRequest request;
   request.map = map_of(arguments);
-  request.camera.lon_deg = place.lon_deg;
-  request.camera.lat_deg = place.lat_deg;
+  request.camera.lon_deg = given.place.lon_deg;
+  request.camera.lat_deg = given.place.lat_deg;
   request.camera.alt_m = arguments.altitude_m.value_or(0);
   request.latitude = arguments.latitude;
+  request.place_name = given.name;
   request.backend = backend_of(arguments);
   request.settings = settings_of(arguments, request.map.kind);
   parse_interest(arguments.render);

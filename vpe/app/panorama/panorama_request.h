@@ -65,11 +65,13 @@ struct PanoramaRequest {
   std::string identity;                     // PlanetMeta::identity; empty: not known yet
   int memory_mb = 0;  // bounds what polygons may take; 0 for rays, whose images do not depend on it
   bool allow_incomplete = false;
-  std::string names_checksum;  // of the file of overlay.names, when it is set
-  std::string scene_checksum;  // of the scene and its models, when there is one
+  std::string names_checksum;   // of the file of overlay.names, when it is set
+  std::string layers_checksum;  // of the files of overlay.layers, when it is set
+  std::string scene_checksum;   // of the scene and its models, when there is one
 
   // How this run makes it.
   std::string latitude;            // as --latitude: of camera and interest, until the planet is open
+  std::string place_name;          // of the camera's place on Mars; empty: coordinates were given
   std::optional<double> height_m;  // above the terrain as drawn, in place of camera.alt_m
   double wait_s = 300;             // for the tiles of a piece
   std::filesystem::path output;
