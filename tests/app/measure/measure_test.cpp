@@ -85,6 +85,38 @@ TEST_F(Measure, APitHasItsVolumeBelowTheRim) {
   EXPECT_NEAR(turned["over_rim"]["below_m3"].get<double>(), one["over_rim"]["below_m3"].get<double>(), 1);
 }
 
+TEST_F(Measure, VolumesAgainstAnotherPlanetAreWhatWasDug) {
+  Dem dem;
+  dem.width = 1000;
+  dem.height = 1000;
+  dem.west_deg = 9.5;
+  dem.north_deg = 0.5;
+  dem.cell_deg = kCell_deg;
+  dem.height_m = [](int column, int) {
+    return -1000 - 0.02 * ((column + 0.5) * kCell_deg - 0.5) * kRadius_m * mars::kRadiansPerDegree;
+  };
+  write_dem(dir_ / "before.tif", dem);
+  const Result built = vpe({"build", "before.tif", "-o", "before.vpe", "--base-spacing", "30000", "-q"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  Words words = kAroundPit;
+  words.insert(words.end(), {"--against", "before.vpe"});
+  const auto one = measured(words)[0];
+  const double reach_m = kPit_deg * kRadius_m * mars::kRadiansPerDegree;
+  const double pit_m3 = 60 * mars::kPi * reach_m * reach_m;
+  EXPECT_NEAR(one["over_other"]["below_m3"].get<double>(), pit_m3, 0.01 * pit_m3);
+  EXPECT_LT(one["over_other"]["above_m3"].get<double>(), 0.001 * pit_m3);
+  EXPECT_EQ(one["other"], "before.vpe");
+  EXPECT_TRUE(measured(kAroundPit)[0]["over_other"].is_null());
+  const Result other =
+      vpe({"build", "before.tif", "-o", "moon.vpe", "--body", "Moon", "--base-spacing", "30000", "-q"});
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  words.back() = "moon.vpe";
+  words.insert(words.begin(), {"measure", path("slope.vpe"), "-q"});
+  const Result refused = vpe(words);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(says(refused.err, {"--against", "moon.vpe"})) << refused.err;
+}
+
 TEST_F(Measure, PolygonsOfAFileAreMeasuredOneByOne) {
   write_text(dir_ / "units.geojson", R"({"type": "FeatureCollection", "features": [
     {"type": "Feature", "properties": {"name": "Plain"}, "geometry": {"type": "Polygon", "coordinates":

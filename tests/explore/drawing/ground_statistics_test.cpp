@@ -116,6 +116,39 @@ TEST_F(PlaneStatistics, DipAndStrikeAreThoseOfThePlane) {
   }
 }
 
+std::shared_ptr<const paging::Surface> level_ground(const std::filesystem::path& path,
+                                                    double radius_m = kRadius_m) {
+  test_support::FakeElevation plain([](const glm::dvec3&) { return 0.0; },
+                                    test_support::fine_around(test_support::kPatch, 0.012, 400));
+  paging::BuildOptions options;
+  options.output = path.string();
+  options.radius_m = radius_m;
+  options.base_spacing_m = 100'000;
+  options.tile_k = 5;
+  options.resampling_posts = 5000;
+  options.threads = 1;
+  paging::build_planet(options, plain, nullptr);
+  return std::make_shared<const paging::Surface>(paging::PlanetFile::open(path.string()),
+                                                 std::size_t{16} << 20);
+}
+
+TEST_F(BowlStatistics, VolumesAgainstAnotherPlanetAreThoseOfWhatChanged) {
+  const test_support::TempDir folder;
+  const std::vector<glm::dvec3> polygon = ring(kMiddle, 1.3 * BowlGround::kReach_m / kRadius_m, 90);
+  const double bowl_m3 = mars::kPi * BowlGround::kReach_m * BowlGround::kReach_m * BowlGround::kDepth_m / 2;
+  const auto found = ground_statistics(surface(), polygon, {.other = level_ground(folder / "level.vpe")});
+  ASSERT_TRUE(found && found->over_other);
+  EXPECT_NEAR(found->over_other->below_m3, bowl_m3, 1e-3 * bowl_m3);
+  EXPECT_LT(found->over_other->above_m3, 1e-4 * bowl_m3);
+  const std::shared_ptr<const paging::Surface> itself(&surface(), [](const paging::Surface*) {});
+  const auto none = ground_statistics(surface(), polygon, {.other = itself});
+  ASSERT_TRUE(none && none->over_other);
+  EXPECT_LT(none->over_other->above_m3 + none->over_other->below_m3, 1e-6 * bowl_m3);
+  EXPECT_FALSE(ground_statistics(surface(), polygon)->over_other);
+  EXPECT_THROW(ground_statistics(surface(), polygon, {.other = level_ground(folder / "small.vpe", 3.3e6)}),
+               std::invalid_argument);
+}
+
 TEST_F(BowlStatistics, VolumesAreThoseOfTheParaboloid) {
   const double reach_rad = 1.3 * BowlGround::kReach_m / kRadius_m;
   std::vector<glm::dvec3> polygon = ring(kMiddle, reach_rad, 90);

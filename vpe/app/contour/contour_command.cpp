@@ -7,6 +7,7 @@
 
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/feature_output.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/parsing.h"
@@ -137,6 +138,7 @@ void run_contour(const ContourArguments& a, const Common& common) {
   check_feature_output(a.output, a.planet);
   const auto planet = open_planet(a.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
+  require_planet_of_box(a.box, meta);
   note_illustration(meta, common.quiet);
   const std::vector<glm::dvec3> edge = edge_of_box(box);
   const double spacing_m =
@@ -176,7 +178,10 @@ void add_contour(CLI::App& program, Common& common) {
   CLI::App* command =
       add_command(program, "contour", "Write lines of equal height as GeoJSON or GeoPackage", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--box", arguments->box, "WEST,SOUTH,EAST,NORTH, degrees, planetocentric")->required();
+  command
+      ->add_option("--box", arguments->box,
+                   "WEST,SOUTH,EAST,NORTH, degrees, planetocentric, or the name of a feature")
+      ->required();
   command->add_option("--interval", arguments->interval_m, "Metres between levels")
       ->required()
       ->check(number_within(kLeastInterval_m, kMostLength_m));
@@ -194,7 +199,7 @@ void add_contour(CLI::App& program, Common& common) {
                    "Leave out points, but stay within this distance, metres; 0: keep all")
       ->check(number_within(0, kMostLength_m))
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "File to write: .geojson, .json or .gpkg")->required();
+  add_feature_output(*command, arguments->output)->required();
   add_examples(
       *command,
       {{"lines every 100 m in Gale, for a geographic information system",

@@ -1,12 +1,8 @@
 #include "vpe/app/contour/grid_report.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "paging/surface/query.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/base/number.h"
 
@@ -36,15 +32,6 @@ std::vector<std::string> source_names(const map::MapGround& ground, const paging
 }
 
 }  // namespace
-
-void check_feature_output(const std::string& output, const std::string& planet) {
-  std::string end = std::filesystem::path(output).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (end != ".geojson" && end != ".json" && end != ".gpkg")
-    throw UsageError("-o " + output + ": name the file .geojson, .json or .gpkg");
-  check_outputs({{"-o", output, FileKind::kFeatures}}, {planet});
-}
 
 map::GroundGrid sample_with_progress(const std::shared_ptr<const paging::PlanetFile>& planet,
                                      const map::GridFrame& frame, const Common& common, ProgressLine& line) {

@@ -1,7 +1,6 @@
 // Reports what commands say about ground that they have sampled on a grid, and the files of lines that they write.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,10 +13,6 @@
 namespace vpe::app {
 
 struct Common;
-
-// Checks the name of a file of features before the work: its extension, and what check_outputs() checks. Throws
-// UsageError and std::runtime_error.
-void check_feature_output(const std::string& output, const std::string& planet);
 
 // Samples the surface with half of the command's memory for tiles. Shows progress, and ends when the user
 // interrupts.

@@ -9,11 +9,13 @@
 
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/feature_output.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/contour/grid_report.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/route/commands.h"
@@ -67,8 +69,8 @@ struct GivenPlaces {
 GivenPlaces given_places(const RouteArguments& a, const paging::PlanetMeta& meta, bool quiet) {
   GivenPlaces given;
   const auto add = [&](const std::string& text, const std::string& option) {
-    const mars::LonLat place = parse_place(text, option + " ");
-    given.places.push_back(planetocentric(place, a.latitude, meta, quiet || !given.places.empty()));
+    given.places.push_back(
+        place_on(given_place(option, text), option, a.latitude, meta, quiet || !given.places.empty()));
     given.names.push_back(option);
     given.directions.push_back(mars::direction(given.places.back()));
   };
@@ -186,8 +188,8 @@ void report_route(const map::Route& route, double ends_off_m, const map::GridFra
 
 void run_route(const RouteArguments& a, const Common& common) {
   check_feature_output(a.output, a.planet);
-  parse_place(a.from, "--from ");
-  parse_place(a.to, "--to ");
+  (void)given_place("--from", a.from);
+  (void)given_place("--to", a.to);
   const auto planet = open_planet(a.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
@@ -226,10 +228,14 @@ void add_route(CLI::App& program, Common& common) {
   CLI::App* command =
       add_command(program, "route", "Find the way between places that keeps to a slope limit", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--from", arguments->from, "LON,LAT where the way begins, degrees")->required();
-  command->add_option("--to", arguments->to, "LON,LAT where it ends, degrees")->required();
-  command->add_option("--via", arguments->via,
-                      "LON,LAT to pass on the way; may be given several times, in order");
+  command
+      ->add_option("--from", arguments->from, "LON,LAT where the way begins, degrees, or the name of the place")
+      ->required();
+  command->add_option("--to", arguments->to, "LON,LAT where it ends, degrees, or the name of the place")
+      ->required();
+  command->add_option(
+      "--via", arguments->via,
+      "LON,LAT or the name of a place to pass on the way; may be given several times, in order");
   command
       ->add_option("--max-slope", arguments->max_slope_deg,
                    "Largest slope along the way and of the ground, degrees")
@@ -255,7 +261,7 @@ void add_route(CLI::App& program, Common& common) {
                    "How far beside the places the way may go, metres (default: half of the longest leg)")
       ->check(number_within(0, kMostMargin_m));
   add_latitude_option(*command, arguments->latitude);
-  command->add_option("-o,--output", arguments->output, "File to write: .geojson, .json or .gpkg")->required();
+  add_feature_output(*command, arguments->output)->required();
   add_examples(
       *command,
       {{"a rover's way on slopes up to 12 degrees",

@@ -1,19 +1,22 @@
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/feature_output.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/visibility/commands.h"
-#include "vpe/app/visibility/sight_ground.h"
 #include "vpe/base/number.h"
 #include "vpe/explore/measure/line_of_sight.h"
+#include "vpe/explore/results/path_results.h"
 
 namespace vpe::app {
 
@@ -28,52 +31,15 @@ struct SightArguments {
   double from_height_m = 2;
   double to_height_m = 0;
   std::string latitude;
+  std::string output;
 };
-
-nlohmann::json sight_json(const explore::LineOfSight& sight, const SightGround& ground,
-                          const explore::SightPoint& from, const explore::SightPoint& to,
-                          const paging::PlanetMeta& meta) {
-  using nlohmann::json;
-  const auto end = [](const explore::SightPoint& p) {
-    return json{{"lon_deg", p.place.lon_deg}, {"lat_deg", p.place.lat_deg}, {"height_m", p.height_m}};
-  };
-  json obstacle;
-  if (sight.obstruction) {
-    obstacle = {{"lon_deg", sight.obstruction->place.lon_deg},
-                {"lat_deg", sight.obstruction->place.lat_deg},
-                {"distance_m", sight.obstruction->distance_m},
-                {"elevation_m", sight.obstruction->elevation_m}};
-  }
-  const double points = ground.points;
-  return {{"from", end(from)},
-          {"to", end(to)},
-          {"visible", sight.visible},
-          {"distance_m", sight.distance_m},
-          {"arc_m", sight.arc_m},
-          {"clearance_m", sight.clearance_m},
-          {"clearance_error_m", sight.clearance_error_m},
-          {"clearance_lon_deg", sight.clearance_place.lon_deg},
-          {"clearance_lat_deg", sight.clearance_place.lat_deg},
-          {"clearance_distance_m", sight.clearance_distance_m},
-          {"obstacle", std::move(obstacle)},
-          {"needed_height_m", std::isfinite(sight.needed_height_m) ? json(sight.needed_height_m) : json()},
-          {"datum", to_string(meta.datum)},
-          {"radius_m", meta.radius_m},
-          {"post_spacing_m", ground.finest_spacing_m},
-          {"coarsest_post_spacing_m", ground.coarsest_spacing_m},
-          {"resampling_max_m", ground.resampling_posts > 0 ? json(ground.resampling_max_m) : json()},
-          {"planet_resampling_max_m", meta.resampling.max_m},
-          {"sources", ground.sources},
-          {"nodata_share", ground.nodata / points},
-          {"synthetic_share", ground.synthetic / points},
-          {"illustration", meta.illustration}};
-}
 
 std::string sight_place(const mars::LonLat& place) {
   return base::format_number(place.lon_deg) + "," + base::format_number(place.lat_deg);
 }
 
-void print_sight(const explore::LineOfSight& sight, const SightGround& ground, const paging::PlanetMeta& meta) {
+void print_sight(const explore::LineOfSight& sight, const explore::GroundAlong& ground,
+                 const paging::PlanetMeta& meta) {
   std::printf("visible:         %s\n", sight.visible ? "yes" : "no");
   std::printf("distance:        %.3f m straight, %.3f m on the sphere\n", sight.distance_m, sight.arc_m);
   std::printf("clearance:       %.3f m at %s, %.3f m along the line\n", sight.clearance_m,
@@ -99,21 +65,22 @@ void print_sight(const explore::LineOfSight& sight, const SightGround& ground, c
               base::format_significant(sight.clearance_error_m, 2).c_str(), resampling.c_str());
   for (const std::string& source : ground.sources)
     std::printf("source:          %s\n", on_one_line(source).c_str());
-  const double percent = 100.0 / ground.points;
   std::printf("nodata:          %s %% of the line\n",
-              base::format_significant(ground.nodata * percent, 3).c_str());
+              base::format_significant(100 * ground.nodata_share(), 3).c_str());
   std::printf("synthetic:       %s %% of the line\n",
-              base::format_significant(ground.synthetic * percent, 3).c_str());
+              base::format_significant(100 * ground.synthetic_share(), 3).c_str());
 }
 
 void run_sight(const SightArguments& a, const Common& common) {
-  explore::SightPoint from{parse_place(a.from, "--from "), a.from_height_m};
-  explore::SightPoint to{parse_place(a.to, "--to "), a.to_height_m};
+  check_feature_output(a.output, a.planet);
+  const GivenPlace given_from = given_place("--from", a.from);
+  const GivenPlace given_to = given_place("--to", a.to);
   const auto planet = open_planet(a.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
-  from.place = planetocentric(from.place, a.latitude, meta, common.quiet);
-  to.place = planetocentric(to.place, a.latitude, meta, true);
+  const explore::SightPoint from{place_on(given_from, "--from", a.latitude, meta, common.quiet),
+                                 a.from_height_m};
+  const explore::SightPoint to{place_on(given_to, "--to", a.latitude, meta, true), a.to_height_m};
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
   explore::LineOfSight sight;
   try {
@@ -121,9 +88,14 @@ void run_sight(const SightArguments& a, const Common& common) {
   } catch (const std::invalid_argument& e) {
     throw UsageError(std::string("vpe sight: ") + e.what());
   }
-  const SightGround ground = sight_ground(surface, from.place, to.place);
+  const std::array ends{from.place, to.place};
+  const explore::GroundAlong ground = explore::ground_along(surface, ends);
+  const nlohmann::json result = explore::sight_json(sight, from, to, ground, meta);
+  if (!a.output.empty())
+    mars::write_features(a.output, explore::sight_layer(result),
+                         explore::result_info("sight: whether one place sees another", meta));
   if (common.json) {
-    print_json(sight_json(sight, ground, from, to, meta));
+    print_json(result);
   } else {
     print_sight(sight, ground, meta);
   }
@@ -136,8 +108,9 @@ void add_sight(CLI::App& program, Common& common) {
   CLI::App* command = add_command(program, "sight",
                                   "Tell whether one place sees another, and what is in the way", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--from", arguments->from, "LON,LAT of the eye, degrees")->required();
-  command->add_option("--to", arguments->to, "LON,LAT of what is looked at, degrees")->required();
+  command->add_option("--from", arguments->from, "LON,LAT of the eye, degrees, or the name of its place")
+      ->required();
+  command->add_option("--to", arguments->to, "LON,LAT of what is looked at, degrees, or its name")->required();
   command->add_option("--from-height", arguments->from_height_m, "Height of the eye above the ground, metres")
       ->check(number_within(0, kMostSightHeight_m))
       ->capture_default_str();
@@ -145,11 +118,14 @@ void add_sight(CLI::App& program, Common& common) {
       ->check(number_within(0, kMostSightHeight_m))
       ->capture_default_str();
   add_latitude_option(*command, arguments->latitude);
+  add_feature_output(*command, arguments->output, "Also write line, ends and obstacle as features");
   add_examples(*command, {{"from a mast to the ground",
                            "vpe sight mars.vpe --from 137.30,-4.60 --to 137.45,-4.75 --from-height 2"},
                           {"between two antennas, for a program",
                            "vpe sight mars.vpe --from 137.30,-4.60 --to 137.45,-4.75 --from-height 5 "
-                           "--to-height 5 --json"}});
+                           "--to-height 5 --json"},
+                          {"line and obstacle for a geographic information system",
+                           "vpe sight mars.vpe --from 137.30,-4.60 --to 137.45,-4.75 -o sight.gpkg"}});
   command->callback([arguments, &common] { run_sight(*arguments, common); });
 }
 

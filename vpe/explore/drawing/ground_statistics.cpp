@@ -257,6 +257,8 @@ std::optional<GroundStatistics> ground_statistics(const paging::Surface& surface
                                                   const GroundStatisticsOptions& options,
                                                   const std::stop_token& stop) {
   if (const std::string why = why_no_statistics(polygon); !why.empty()) throw std::invalid_argument(why);
+  if (options.other && options.other->planet_radius_m() != surface.planet_radius_m())
+    throw std::invalid_argument("the other planet has another radius");
   const glm::dvec3 middle = middle_of(polygon);
   const paging::PlanetMeta& meta = surface.planet().meta();
   const double radius_m = surface.planet_radius_m();
@@ -324,6 +326,11 @@ std::optional<GroundStatistics> ground_statistics(const paging::Surface& surface
     volumes.emplace_back(
         VolumeSum([at_m = radius_m + *options.level_m](const glm::dvec3&) { return at_m; }, false, radius_m),
         &out.over_level);
+  if (options.other)
+    volumes.emplace_back(
+        VolumeSum([&](const glm::dvec3& p) { return radius_m + options.other->at(p).height_m; }, false,
+                  radius_m),
+        &out.over_other);
   share_before = 0.5;
   Triangles second(surface, std::max(1.0, cells), progress,
                    [&](const Triangle& t, const Triangles::Origin&, int winding) {

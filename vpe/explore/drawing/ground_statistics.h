@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -25,6 +26,8 @@ struct GroundStatisticsOptions {
   double most_cells = 2e7;
   // Elevation of a sphere, metres above the planet's, against which volumes are measured. Absent: none are.
   std::optional<double> level_m = std::nullopt;
+  // Ground of another planet file of the same body and radius, against which volumes are measured. Null: none are.
+  std::shared_ptr<const paging::Surface> other = nullptr;
   // Slopes whose steeper ground is counted, degrees.
   std::vector<double> slope_limits_deg = {};
   // Called now and then with the share that is done, 0 to 1, on the calling thread. May be empty.
@@ -62,6 +65,8 @@ struct GroundStatistics {
   // too narrow.
   std::optional<GroundVolume> over_rim;
   std::optional<GroundVolume> over_level;
+  // Against the other ground, taken at the corners of this ground's facets and linear between them.
+  std::optional<GroundVolume> over_other;
 
   double nodata_share = 0;                // of the area on the sphere
   std::optional<double> synthetic_share;  // of it, from sources that are made up; absent unless is_exact
@@ -80,10 +85,10 @@ inline constexpr double kLargestStatistics_rad = 0.5;
 std::string why_no_statistics(std::span<const glm::dvec3> polygon);
 
 // Computes the statistics of S within a closed outline of unit directions that does not cross itself. Where is_exact,
-// areas, the plane and volumes over it are integrals over facets without an error but rounding. Volumes over the rim and a
-// level are those of references that are linear on each facet; where one crosses the ground, the line between above and
+// areas, the plane and volumes over it are integrals over facets without an error but rounding. Volumes over the rim, a
+// level and another ground are those of references that are linear on each facet; where one crosses the ground, the line between above and
 // below is straight on the facet. Returns nullopt if it was asked to stop. Throws std::invalid_argument with
-// why_no_statistics(), and paging::PlanetError. Any thread may call it.
+// why_no_statistics(), for another ground of another radius, and paging::PlanetError. Any thread may call it.
 std::optional<GroundStatistics> ground_statistics(const paging::Surface& surface,
                                                   std::span<const glm::dvec3> polygon,
                                                   const GroundStatisticsOptions& options = {},

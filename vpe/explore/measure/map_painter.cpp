@@ -24,7 +24,8 @@ std::uint8_t byte(double value) {
 MapPainter::MapPainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)), shader_(planet_, budget_bytes) {}
 
-core::RgbImage MapPainter::paint(const MapView& map, MapStyle style, base::ThreadPool& pool) {
+core::RgbImage MapPainter::paint(const MapView& map, MapStyle style, base::ThreadPool& pool,
+                                 std::span<const MapLayer> layers) {
   core::Appearance appearance;
   appearance.mode = style == MapStyle::kImagery ? core::Mode::kTextured : core::Mode::kColoured;
   appearance.colour = core::Colour::kElevation;
@@ -52,6 +53,7 @@ core::RgbImage MapPainter::paint(const MapView& map, MapStyle style, base::Threa
           colour ? base::Rgb{byte(colour->x), byte(colour->y), byte(colour->z)} : kNoData;
     }
   });
+  if (!layers.empty()) paint_map_layers(map, layers, planet_->radius_m(), image);
   return image;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "paging/shading/terrain_shader.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/image/image.h"
+#include "vpe/explore/measure/map_layers.h"
 #include "vpe/explore/measure/map_view.h"
 
 namespace vpe::explore {
@@ -19,8 +21,9 @@ class MapPainter {
 
   // Paints a map with light from the north-west at 45 degrees everywhere, except on imagery that is known to hold its
   // own light. Areas beyond the poles are grey,
-  // areas of nodata black. Pixels do not depend on the pool. Throws paging::PlanetError.
-  core::RgbImage paint(const MapView& map, MapStyle style, base::ThreadPool& pool);
+  // areas of nodata black. Over that are layers, see paint_map_layers(). Pixels do not depend on the pool. Throws paging::PlanetError.
+  core::RgbImage paint(const MapView& map, MapStyle style, base::ThreadPool& pool,
+                       std::span<const MapLayer> layers = {});
 
  private:
   std::shared_ptr<const paging::PlanetFile> planet_;
