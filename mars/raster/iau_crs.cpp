@@ -24,31 +24,6 @@ std::string name_of(const OGRSpatialReference& crs) {
   return text.substr(0, text.find('|'));
 }
 
-// Returns letters and digits, with one underscore for all between: what ESRI's kind of names leaves.
-std::string plain(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      text += c;
-    } else if (!text.empty() && text.back() != '_') {
-      text += '_';
-    }
-  }
-  if (text.ends_with('_')) text.pop_back();
-  return text;
-}
-
-std::optional<std::string> iau_code(const std::string& name) {
-  int count = 0;
-  OSRCRSInfo** list = OSRGetCRSInfoListFromDatabase("IAU_2015", nullptr, &count);
-  std::optional<std::string> code;
-  for (int i = 0; i < count; ++i) {
-    if (name == plain(list[i]->pszName)) code = list[i]->pszCode;
-  }
-  OSRDestroyCRSInfoList(list);
-  return code;
-}
-
 bool counts_west(const OGRSpatialReference& crs) {
   for (int i = 0; i < 2; ++i) {
     OGRAxisOrientation orientation = OAO_Other;
@@ -76,8 +51,32 @@ bool same_map(const OGRSpatialReference& a, const OGRSpatialReference& b) {
 
 }  // namespace
 
+std::string plain_crs_name(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      text += c;
+    } else if (!text.empty() && text.back() != '_') {
+      text += '_';
+    }
+  }
+  if (text.ends_with('_')) text.pop_back();
+  return text;
+}
+
+std::optional<std::string> iau_code(std::string_view plain_name) {
+  int count = 0;
+  OSRCRSInfo** list = OSRGetCRSInfoListFromDatabase("IAU_2015", nullptr, &count);
+  std::optional<std::string> code;
+  for (int i = 0; i < count && !code; ++i) {
+    if (plain_name == plain_crs_name(list[i]->pszName)) code = list[i]->pszCode;
+  }
+  OSRDestroyCRSInfoList(list);
+  return code;
+}
+
 std::optional<OGRSpatialReference> restored_iau_crs(const OGRSpatialReference& crs) {
-  const std::string name = plain(name_of(crs));
+  const std::string name = plain_crs_name(name_of(crs));
   const bool local = crs.IsLocal() != 0;
   // The list of all names is long.
   const bool graphic = name.find("_2015_Ographic") != std::string::npos;

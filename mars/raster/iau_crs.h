@@ -5,10 +5,20 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "mars/raster/gdal_grid.h"
 
 namespace mars {
+
+// Returns letters and digits of a system's name in groups with one underscore between: what the kinds of WKT have in common,
+// and what ESRI's kind of names leaves. Pure.
+std::string plain_crs_name(std::string_view name);
+
+// Returns the code in IAU_2015 of the system whose plain_crs_name() this is, as "49900", or nullopt if there is none. Reads
+// the whole list of PROJ, which is long. Must be called inside a GdalScope.
+std::optional<std::string> iau_code(std::string_view plain_name);
 
 // Returns the system of authority IAU_2015 that has the name of `crs`, if `crs` lacks its axes: GeoTIFF keeps
 // neither longitudes that count west (49901, 49911) nor planetocentric latitudes of an ellipsoid (49902, which

@@ -2,42 +2,24 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <string_view>
+
+#include "mars/raster/iau_crs.h"
 
 namespace mars {
 namespace {
 
-// Returns letters and digits in groups with one underscore between: what is the same in all kinds of WKT.
-std::string plain_words(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      text += c;
-    } else if (!text.empty() && text.back() != '_') {
-      text += '_';
-    }
-  }
-  if (text.ends_with('_')) text.pop_back();
+// ESRI's kind of WKT puts this before the names of geographic systems.
+std::string words_of(const std::string& name) {
+  std::string text = plain_crs_name(name);
   return text.starts_with("GCS_") ? text.substr(4) : text;
 }
 
-std::string code_of_name(const std::string& words) {
-  int count = 0;
-  OSRCRSInfo** list = OSRGetCRSInfoListFromDatabase("IAU_2015", nullptr, &count);
-  std::string code;
-  for (int i = 0; i < count && code.empty(); ++i) {
-    if (words == plain_words(list[i]->pszName)) code = list[i]->pszCode;
-  }
-  OSRDestroyCRSInfoList(list);
-  return code;
-}
-
-std::optional<OGRSpatialReference> system_of(const std::string& code) {
+std::optional<OGRSpatialReference> system_of(const std::optional<std::string>& code) {
   OGRSpatialReference found;
-  if (code.empty() ||
-      found.SetFromUserInput(("IAU_2015:" + code).c_str(),
+  if (!code ||
+      found.SetFromUserInput(("IAU_2015:" + *code).c_str(),
                              OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
     return std::nullopt;
   return found;
@@ -60,7 +42,7 @@ bool agree(const OGRSpatialReference& a, const OGRSpatialReference& b) {
 
 std::optional<OGRSpatialReference> with_iau_axes(const OGRSpatialReference& crs) {
   const char* name = crs.GetName();
-  const std::string words = plain_words(name == nullptr ? "" : name);
+  const std::string words = words_of(name == nullptr ? "" : name);
   // Systems of a sphere lose nothing, and the list of all names is long.
   if (words.find("_2015_Ographic") == std::string::npos && words.find("_2015_Ocentric") == std::string::npos)
     return std::nullopt;
@@ -68,17 +50,17 @@ std::optional<OGRSpatialReference> with_iau_axes(const OGRSpatialReference& crs)
   const char* own_code = crs.GetAuthorityCode(nullptr);
   const bool has_code =
       authority != nullptr && own_code != nullptr && std::string_view(authority).starts_with("IAU");
-  auto found = system_of(has_code ? own_code : code_of_name(words));
+  auto found = system_of(has_code ? std::optional<std::string>(own_code) : iau_code(words));
   if (!found || !agree(crs, *found)) return std::nullopt;
   return found;
 }
 
 std::string iau_sphere_code(const std::string& body, double radius_m) {
-  const std::string code = code_of_name(plain_words(body + " (2015) - Sphere / Ocentric"));
+  const auto code = iau_code(plain_crs_name(body + " (2015) - Sphere / Ocentric"));
   const auto found = system_of(code);
   return found && found->IsGeographic() != 0 && is_equal(found->GetSemiMajor(), radius_m) &&
                  found->GetInvFlattening() == 0
-             ? code
+             ? *code
              : "";
 }
 

@@ -47,10 +47,15 @@ std::string extension_of(const std::string& path) {
   return text;
 }
 
+// Returns null for the extension of another format.
+const FormatName* find_format(const std::string& path) {
+  const auto* found = std::ranges::find(kFormats, extension_of(path), &FormatName::extension);
+  return found == kFormats.end() ? nullptr : found;
+}
+
 const FormatName& format_of(const std::string& path) {
-  const std::string extension = extension_of(path);
-  const auto* found = std::ranges::find(kFormats, extension, &FormatName::extension);
-  if (found == kFormats.end())
+  const FormatName* found = find_format(path);
+  if (found == nullptr)
     throw source_error(path, "its extension is not one of a format of features", "", kAdvice);
   return *found;
 }
@@ -91,6 +96,8 @@ std::vector<std::string> texts_of(const std::string& path, VectorFormat format, 
 }
 
 }  // namespace
+
+bool has_vector_extension(const std::string& path) { return find_format(path) != nullptr; }
 
 VectorFile::VectorFile(const std::string& path, std::size_t most_bytes) : path_(path) {
   check_local(path);

@@ -17,6 +17,9 @@ namespace mars {
 // Names a format.
 enum class VectorFormat { geopackage, geojson, shapefile, kml, gpx, csv };
 
+// Returns true if the extension of a path is that of a format. Upper and lower case do not matter.
+bool has_vector_extension(const std::string& path);
+
 // Holds an open vector file. One thread uses it at a time, inside an OfflineScope.
 class VectorFile {
  public:

@@ -84,6 +84,69 @@ TEST_F(Traverse, ATourKeepsItsViews) {
   EXPECT_NE(flight("tour.kml", {"--by", "walk"}).find("height=1.7"), std::string::npos);
 }
 
+TEST_F(Traverse, ALineOfAVectorFileIsTheWayOfATable) {
+  write_text(path("line.geojson"),
+             R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+                {"type": "LineString", "coordinates": [[10, -5], [10.01, -5], [10.01, -4.99]]}}]})");
+  EXPECT_EQ(poses(flight("line.geojson")), poses(flight("way.csv")));
+}
+
+TEST_F(Traverse, ATrackHasItsTimes) {
+  write_text(path("track.gpx"),
+             "<gpx version='1.1' creator='t' xmlns='http://www.topografix.com/GPX/1/1'><trk><trkseg>"
+             "<trkpt lat='-5' lon='10'><time>2026-11-27T12:00:00Z</time></trkpt>"
+             "<trkpt lat='-5' lon='10.01'><time>2026-11-27T12:05:00Z</time></trkpt></trkseg><trkseg>"
+             "<trkpt lat='-4.99' lon='10.01'><time>2026-11-27T12:20:00Z</time></trkpt></trkseg></trk></gpx>");
+  const auto duration_s = [&](const Words& more) {
+    Words all = words("track.gpx", more);
+    all.emplace_back("--json");
+    const Result result = vpe(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return parse_json(result.out)["duration_s"].get<double>();
+  };
+  EXPECT_NEAR(duration_s({"--by", "drive"}), 1200, 1e-6);
+  EXPECT_NEAR(duration_s({"--by", "walk", "--time-scale", "10"}), 120, 1e-6);
+  EXPECT_NEAR(duration_s({"--by", "height", "--speed", "100"}), 2 * 0.01 * 3396190 * M_PI / 180 / 100, 0.1);
+  const std::string text = flight("track.gpx", {"--by", "height", "--step", "1000"});
+  EXPECT_NE(text.find("at 300 pose lon=10.01 lat=-5 "), std::string::npos) << text;
+  EXPECT_EQ(vpe({"fly", "out.flight", planet().string(), "-o", "frames", "--size", "64x36", "--frames", "0-2"})
+                .exit_code,
+            0);
+  // A segment alone has one point.
+  expect_failure(words("track.gpx", {"--way", "2"}), 2, {"track.gpx", "two different places"});
+  expect_failure(words("track.gpx", {"--way", "3"}), 2, {"--way 3", "2 ways"});
+}
+
+TEST_F(Traverse, PointsHaveTheAttitudeOfTheirFields) {
+  const auto station = [](const char* lon, const char* yaw) {
+    return std::string(R"({"type": "Feature", "properties": {"heading": )") + yaw +
+           R"(, "pitch": -20}, "geometry": {"type": "Point", "coordinates": [)" + lon + ", -5]}}";
+  };
+  write_text(path("stations.geojson"), R"({"type": "FeatureCollection", "features": [)" + station("10", "5") +
+                                           ", " + station("10.01", "15") + "]}");
+  const std::string text = flight("stations.geojson", {"--by", "height"});
+  EXPECT_NE(text.find("yaw=5 pitch=-20"), std::string::npos) << text.substr(0, 400);
+  EXPECT_NE(text.find("yaw=15 pitch=-20"), std::string::npos);
+}
+
+TEST_F(Traverse, BadVectorFilesAndTheirOptions) {
+  write_text(path("empty.geojson"), R"({"type": "FeatureCollection", "features": []})");
+  expect_failure(words("empty.geojson"), 1, {"empty.geojson", "lines or points"});
+  write_text(path("bad.gpx"), "<gpx");
+  expect_failure(words("bad.gpx"), 1, {"bad.gpx"});
+  expect_failure(words("missing.gpkg"), 1, {"missing.gpkg"});
+  write_text(path("line.geojson"),
+             R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+                {"type": "LineString", "coordinates": [[10, -5], [10.01, -5]]}}]})");
+  expect_failure(words("line.geojson", {"--latitude", "planetographic"}), 2, {"--latitude", "line.geojson"});
+  expect_failure(words("line.geojson", {"--layer", "none"}), 1, {"none"});
+  expect_failure(words("line.geojson", {"--time-scale", "2"}), 2, {"--time-scale", "no times"});
+  expect_failure(words("line.geojson", {"--time-scale", "2", "--speed", "2"}), 2, {"--time-scale", "--speed"});
+  expect_failure(words("line.geojson", {"--time-scale", "0"}), 2, {"--time-scale"});
+  expect_failure(words("way.csv", {"--layer", "x"}), 2, {"--layer"});
+  EXPECT_FALSE(exists("out.flight"));
+}
+
 TEST_F(Traverse, SlopesBeyondTheLimitAreWarnedOfOrFail) {
   // Ridges 118 km apart rise by 16 km, that is by 7 degrees.
   Dem ridges;

@@ -5,7 +5,7 @@
 #include "mars/geodesy/place_text.h"
 #include "tests/fuzz/targets.h"
 #include "vpe/app/cli/program.h"
-#include "vpe/app/planet/places.h"
+#include "vpe/app/places/places.h"
 
 namespace fuzz {
 namespace {

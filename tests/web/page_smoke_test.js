@@ -31,6 +31,24 @@ test('opens, draws and reads out, without errors', async () => {
   assert.strictEqual(browser.ids.get('hotspots').children[0].hidden, false);
 });
 
+test('a hotspot leads to a page with the heading of the view', {skip: !isOurs}, () => {
+  const browser = new FakeBrowser(folder);
+  const page = browser.start();
+  const headingOf = (address) => Number(/#view=([^,]+),/.exec(address)[1]);
+  const link = browser.ids.get('hotspots').children[0];
+  assert.strictEqual(link.href, '../rim/index.html');
+  for (const yaw of [170, 200]) {
+    page.view.lookAt(yaw, 0);
+    link.fire('pointerdown');
+    assert.ok(link.href.startsWith('../rim/index.html#view='), link.href);
+    assert.ok(Math.abs(headingOf(link.href) - yaw) < 0.01, link.href);
+  }
+  const inList = browser.ids.get('place-list').children[0].children.at(-1);
+  page.view.lookAt(185, 0);
+  inList.fire('click');
+  assert.ok(Math.abs(headingOf(inList.href) - 185) < 0.01, inList.href);
+});
+
 test('a drag turns, the wheel and the keys zoom, all by keyboard', async () => {
   const browser = new FakeBrowser(folder, {isCalm: true});
   const page = browser.start();

@@ -121,6 +121,21 @@ test('fragments come back', () => {
   }
 });
 
+test('another panorama opens with the same heading', () => {
+  const {pageInView, parseFragment} = vpe.text;
+  const random = generator(10);
+  for (let n = 0; n < 100; ++n) {
+    const view = {yaw: 720 * random() - 360, pitch: 100 * random() - 50, fov: 100 * random() + 0.1, stereo: 'side'};
+    const address = pageInView('../rim/index.html', view, true);
+    assert.ok(address.startsWith('../rim/index.html#'));
+    const there = parseFragment(address.replace(/^[^#]*/, ''));
+    nearAzimuth(there.yaw, view.yaw, view.fov / 10000, 'yaw');
+    near(there.pitch, view.pitch, view.fov / 10000, 'pitch');
+    assert.strictEqual(there.stereo, undefined);  // the other one may be for one eye
+  }
+  assert.strictEqual(pageInView('a.html', {yaw: 5, pitch: 0, fov: 60}, false), 'a.html');
+});
+
 test('texts', () => {
   const {lengthText, azimuthText, placeText, readOut, niceStep} = vpe.text;
   assert.strictEqual(lengthText(3.456), '3.46 m');

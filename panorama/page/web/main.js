@@ -47,10 +47,13 @@
     const download = byId('download');
     download.hidden = !data.picture;
     if (data.picture) download.href = data.picture;
-    vpe.panel.fillPlaces(byId('place-list'), data, (direction) => {
-      byId('places').close();
-      page.look(direction);
-      stage.focus();
+    vpe.panel.fillPlaces(byId('place-list'), data, {
+      look: (direction) => {
+        byId('places').close();
+        page.look(direction);
+        stage.focus();
+      },
+      pageOf: page.marks.pageOf,
     });
     addEventListener('hashchange', () => {
       if (location.hash.slice(1) === page.fragment) return;

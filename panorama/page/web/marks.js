@@ -19,12 +19,26 @@
   const directionOf = (mark) => ({azimuth: mark.azimuth_deg, elevation: mark.elevation_deg});
   const textOf = (mark) => (mark.range_m ? `${mark.text}, ${lengthText(mark.range_m)}` : mark.text);
 
+  // Makes a link to the page of another panorama, which opens with the view at the time when the link is used.
+  // pageOf(mark) returns its address.
+  function pageLink(kind, text, mark, pageOf) {
+    const link = element('a', kind, text);
+    link.href = mark.page;
+    for (const use of ['pointerdown', 'focus', 'click']) {
+      link.addEventListener(use, () => {
+        link.href = pageOf(mark);
+      });
+    }
+    return link;
+  }
+
   class Marks {
     // `boxes` has the elements compass, labels, hotspots, scale and scaleText. focused(mark) is called when a
-    // hotspot gets the keyboard.
-    constructor(data, boxes, {focused}) {
+    // hotspot gets the keyboard. seen() returns the view as it is.
+    constructor(data, boxes, {focused, seen}) {
       this.data = data;
       this.boxes = boxes;
+      this.pageOf = (mark) => vpe.text.pageInView(mark.page, seen(), data.has_north);
       this.hasCompass = true;
       this.hasNames = true;
       const pen = boxes.compass.getContext('2d');
@@ -34,8 +48,7 @@
         mark, text: textOf(mark), width: pen.measureText(textOf(mark)).width + 10,
       }));
       this.hotspots = data.hotspots.map((mark) => {
-        const link = element('a', 'hotspot', textOf(mark));
-        link.href = mark.page;
+        const link = pageLink('hotspot', textOf(mark), mark, this.pageOf);
         link.hidden = true;
         link.title = `Go to the panorama ${mark.text}`;
         link.addEventListener('focus', () => focused(mark));
@@ -121,5 +134,5 @@
     }
   }
 
-  vpe.marks = {Marks, directionOf, textOf, element};
+  vpe.marks = {Marks, directionOf, textOf, element, pageLink};
 })((globalThis.vpe = globalThis.vpe || {}));

@@ -35,7 +35,7 @@
       this.marks = new vpe.marks.Marks(data, {
         compass: byId('compass'), labels: byId('labels'), hotspots: byId('hotspots'), scale: byId('scale'),
         scaleText: byId('scale-text'),
-      }, {focused: (mark) => this.look(vpe.marks.directionOf(mark))});
+      }, {focused: (mark) => this.look(vpe.marks.directionOf(mark)), seen: () => this.view});
       this.motion = new vpe.input.MotionInput(this);
       this.home = {yaw: this.view.yaw, pitch: this.view.pitch, fov: null};
       this.openFragment(location.hash);

@@ -2,7 +2,7 @@
 (function (vpe) {
   'use strict';
 
-  const {element, directionOf, textOf} = vpe.marks;
+  const {element, directionOf, textOf, pageLink} = vpe.marks;
 
   const kReadOut_ms = 100;
 
@@ -65,8 +65,8 @@
     }
   }
 
-  // Fills the list of names and other panoramas. look(mark) turns to one.
-  function fillPlaces(list, data, look) {
+  // Fills the list of names and other panoramas. look(mark) turns to one; pageOf(mark) returns the address of its page.
+  function fillPlaces(list, data, {look, pageOf}) {
     const entry = (mark, isHotspot) => {
       const item = element('li', '');
       const button = element('button', '', `Look at ${textOf(mark)}`);
@@ -74,9 +74,7 @@
       button.addEventListener('click', () => look(directionOf(mark)));
       item.appendChild(button);
       if (isHotspot) {
-        const link = element('a', '', `Go to the panorama ${mark.text}`);
-        link.href = mark.page;
-        item.append(' ', link);
+        item.append(' ', pageLink('', `Go to the panorama ${mark.text}`, mark, pageOf));
       }
       return item;
     };

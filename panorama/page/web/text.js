@@ -131,6 +131,12 @@
     return stereo && stereo !== 'off' ? `${text}&stereo=${stereo}` : text;
   }
 
+  // Returns the address of another panorama's page that opens with the heading, pitch and field of view of this one.
+  // Without a common north it opens as it is.
+  function pageInView(page, {yaw, pitch, fov}, hasNorth) {
+    return hasNorth ? `${page}#${formatFragment({yaw, pitch, fov})}` : page;
+  }
+
   // Returns {yaw, pitch, fov, stereo} with what a fragment says; absent or wrong parts are undefined.
   function parseFragment(fragment) {
     const found = {};
@@ -175,6 +181,6 @@
 
   vpe.text = {
     kStereoModes, fixed, decimalsFor, lengthText, pointOf, azimuthText, placeText, readOut, niceStep, compassMarks,
-    spanOf, middleRowElevation, scaleBar, formatFragment, parseFragment, layOutLabels,
+    spanOf, middleRowElevation, scaleBar, pageInView, formatFragment, parseFragment, layOutLabels,
   };
 })((globalThis.vpe = globalThis.vpe || {}));

@@ -1,18 +1,25 @@
 // vpe find, and names in place of poses.
 #include <cmath>
 
+#include "mars/embedded/data_files.h"
 #include "mars/geodesy/sphere.h"
 #include "tests/app/support/app_fixture.h"
 #include "vpe/app/cli/program.h"
-#include "vpe/app/planet/named_places.h"
+#include "vpe/app/places/named_places.h"
+#include "vpe/explore/places/landing_sites.h"
 
 namespace app_test {
 namespace {
 
+namespace explore = vpe::explore;
 using vpe::app::looks_like_name;
 using vpe::app::sight_of;
 
-class Find : public AppTest {};
+class Find : public AppTest {
+ protected:
+  // The file of landing sites, as a value of overlay.names.
+  static std::string landings() { return mars::find_data_file(explore::kLandingsFile); }
+};
 
 TEST_F(Find, PlacesComeWithWhereTheyAre) {
   const Result result = vpe({"find", "OLYMPUS mons", "--json"});
@@ -76,6 +83,45 @@ TEST_F(Find, ALisOfOnesOwnIsSearched) {
   EXPECT_TRUE(list[0]["diameter_m"].is_null());
 }
 
+TEST_F(Find, LandingSitesAreFoundWithWhatIsKnownOfThem) {
+  const auto list = parse_json(vpe({"find", "curiosity", "--json"}).out);
+  ASSERT_GE(list.size(), 1U);
+  EXPECT_EQ(list[0]["name"], "Curiosity");
+  EXPECT_NEAR(list[0]["lon_deg"].get<double>(), 137.4417, 1e-9);
+  EXPECT_NEAR(list[0]["lat_deg"].get<double>(), -4.5895, 1e-9);
+  EXPECT_TRUE(list[0]["diameter_m"].is_null());
+  const auto& landing = list[0]["landing"];
+  EXPECT_EQ(landing["mission"], "Mars Science Laboratory");
+  EXPECT_EQ(landing["date"], "2012-08-06");
+  EXPECT_EQ(landing["kind"], "landing");
+  EXPECT_TRUE(landing["accuracy_m"].is_null());
+  EXPECT_NE(landing["source"].get<std::string>().find("Bradbury Landing"), std::string::npos);
+  const Result text = vpe({"find", "polar lander"});
+  EXPECT_TRUE(
+      says(text.out, {"Mars Polar Lander: 165.0000,-76.0000", "target of", "1999-12-03", "accuracy 100000 m"}))
+      << text.out;
+  // A crater is not the lander of the same name, and a number belongs to a name.
+  EXPECT_FALSE(parse_json(vpe({"find", "schiaparelli", "--json"}).out)[0].contains("landing"));
+  EXPECT_EQ(parse_json(vpe({"find", "viking 2", "--json"}).out)[0]["name"], "Viking 2");
+}
+
+// The camera stands so that a few kilometres are seen.
+TEST_F(Find, ALandingSiteIsDrawnByItsName) {
+  for (const char* name : {"Curiosity", "Viking 1"}) {
+    const Result drawn =
+        vpe({"render", planet().string(), "--pose", name, "--size", "64x36", "-q", "-o", "site.png"});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    const auto sight = parse_json(vpe({"find", name, "--json"}).out)[0]["sight"];
+    EXPECT_GT(sight["height_m"].get<double>(), 1000);
+    EXPECT_LT(sight["height_m"].get<double>(), 6000);
+  }
+  const Result over =
+      vpe({"render", planet().string(), "--pose", "Curiosity", "--set", "overlay.names=" + landings(), "--size",
+           "320x180", "-q", "-o", "named.png", "--overlay-layer", "names.png"});
+  EXPECT_EQ(over.exit_code, 0) << over.err;
+  EXPECT_TRUE(exists("names.png"));
+}
+
 TEST_F(Find, BadInputIsReported) {
   expect_failure({"find", "xyzzy"}, 1, {"xyzzy", "list of Mars"});
   expect_failure({"find"}, 2, {"NAME"});
@@ -93,6 +139,67 @@ TEST(NamedPlaces, NumbersAndNotationsAreNoNames) {
   for (const char* name : {"Gale", "olympus mons", "\u00c1rgyre"}) EXPECT_TRUE(looks_like_name(name)) << name;
   for (const char* other : {"", "1,2,3", "-5,3,0", "N4.6", "lat 4 lon 5", "Gale,3", " Gale"})
     EXPECT_FALSE(looks_like_name(other)) << other;
+}
+
+TEST(NamedPlaces, ATextWithANumberIsANameIfTheListHasIt) {
+  for (const char* name : {"Viking 1", "viking-2", "Airy-0", "BEAGLE 2", "Mars 3", "Gale"})
+    EXPECT_TRUE(vpe::app::is_name(name)) << name;
+  for (const char* other : {"Viking 7", "4.6S,222.6W", "N4.6", "lat 4 lon 5", "137.4", "1,2", ""})
+    EXPECT_FALSE(vpe::app::is_name(other)) << other;
+  EXPECT_TRUE(vpe::app::is_listed_name("gale"));
+  EXPECT_FALSE(vpe::app::is_listed_name("gal"));
+}
+
+TEST(NamedPlaces, CoordinatesComeBeforeNames) {
+  const auto given = vpe::app::given_place("--at", "137.4417 E 4.5895 S");
+  EXPECT_TRUE(given.name.empty());
+  EXPECT_NEAR(given.place.lon_deg, 137.4417, 1e-12);
+  const auto named = vpe::app::given_place("--at", "curiosity");
+  EXPECT_EQ(named.name, "Curiosity");
+  EXPECT_NEAR(named.place.lat_deg, -4.5895, 1e-9);
+  EXPECT_EQ(named.diameter_m, 0);
+  EXPECT_GT(vpe::app::given_place("--at", "Gale").diameter_m, 1e5);
+  EXPECT_EQ(vpe::app::given_place("--at", "perseve").name, "Perseverance");  // a part that no other name has
+}
+
+TEST(NamedPlaces, ATypingErrorIsOfferedAndNotTaken) {
+  for (const auto& [text, words] :
+       {std::pair<const char*, std::vector<std::string>>{"olimpus mons", {"Olympus Mons"}},
+        {"mons", {"several names"}},
+        {"1,2,3", {"LON,LAT"}},
+        {"Viking 7", {"name of a place of Mars"}},
+        {"xyzzy", {"vpe find"}}}) {
+    try {
+      (void)vpe::app::given_place("--at", text);
+      ADD_FAILURE() << text;
+    } catch (const vpe::app::UsageError& e) {
+      EXPECT_TRUE(says(e.what(), {"--at", text})) << e.what();
+      EXPECT_TRUE(says(e.what(), words)) << e.what();
+    }
+  }
+}
+
+TEST(NamedPlaces, AreThoseOfMars) {
+  paging::PlanetMeta meta;
+  const auto given = vpe::app::given_place("--at", "Gale");
+  EXPECT_EQ(vpe::app::place_on(given, "--at", "planetographic", meta, true).lat_deg, given.place.lat_deg);
+  const vpe::app::GivenPlace numbers{{137, 45}, "", 0};
+  EXPECT_LT(vpe::app::place_on(numbers, "--at", "planetographic", meta, true).lat_deg, 45);
+  EXPECT_EQ(vpe::app::places_on({given, numbers}, "", meta, true).size(), 2U);
+  paging::PlanetMeta moon;
+  moon.body = "Moon";
+  moon.radius_m = 1737400;
+  paging::PlanetMeta large;
+  large.radius_m = 6371000;
+  for (const paging::PlanetMeta& other : {moon, large}) {
+    EXPECT_NO_THROW((void)vpe::app::place_on(numbers, "--at", "", other, true));
+    try {
+      (void)vpe::app::place_on(given, "--at", "", other, true);
+      ADD_FAILURE() << other.body;
+    } catch (const vpe::app::UsageError& e) {
+      EXPECT_TRUE(says(e.what(), {"--at", "Gale", "names of places are those of Mars"})) << e.what();
+    }
+  }
 }
 
 TEST(NamedPlaces, AreSeenWhole) {

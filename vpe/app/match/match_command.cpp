@@ -17,6 +17,7 @@
 #include "vpe/app/match/commands.h"
 #include "vpe/app/match/planet_skyline.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -44,7 +45,7 @@ struct MatchArguments {
 constexpr double kFine_deg = 0.05;
 
 void check(const MatchArguments& a) {
-  parse_place(a.near, "--near ");
+  (void)given_place("--near", a.near);
   const bool is_round = a.projection != "perspective";
   if (is_round && (!a.degrees_per_pixel || !a.horizon_row))
     throw UsageError(
@@ -195,7 +196,7 @@ void match(const MatchArguments& a, const Common& common) {
   note_illustration(planet->meta(), common.quiet);
   const paging::Surface surface(planet, memory_bytes(common));
   const mars::LonLat near =
-      planetocentric(parse_place(a.near, "--near "), a.latitude, planet->meta(), common.quiet);
+      place_on(given_place("--near", a.near), "--near", a.latitude, planet->meta(), common.quiet);
   base::ThreadPool pool(common.threads);
   const PlanetSkyline skyline(surface, near, a.height_m, pool);
   MatchResult result;
@@ -224,7 +225,8 @@ void add_match(CLI::App& program, Common& common) {
       add_command(program, "match", "Find how a photograph was taken, from its skyline", common, true);
   command->add_option("PHOTO", arguments->photo, "Photograph or mosaic (.png, .jpg)")->required();
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--near", arguments->near, "LON,LAT of the camera, degrees")->required();
+  command->add_option("--near", arguments->near, "LON,LAT of the camera, degrees, or the name of its place")
+      ->required();
   add_latitude_option(*command, arguments->latitude);
   command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0.001, 1e7))

@@ -11,6 +11,7 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/measured_part.h"
 #include "vpe/app/planet/planet_argument.h"
@@ -104,14 +105,14 @@ SunReport report_of(const SunArguments& a, mars::UnixSeconds date_s, mars::LonLa
 void sun(const SunArguments& a, const Common& common) {
   const InterruptGuard guard;
   const mars::UnixSeconds date_s = date_of(a);
-  const mars::LonLat given = parse_place(a.at, "--at ");
+  const GivenPlace given = given_place("--at", a.at);
   const auto planet = open_planet(a.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   if (meta.body != "Mars")
     throw UsageError("vpe sun: the clock and the sun's place are known for Mars only, and this is " +
                      meta.body);
   note_illustration(meta, common.quiet);
-  const mars::LonLat place = planetocentric(given, a.latitude, meta, common.quiet);
+  const mars::LonLat place = place_on(given, "--at", a.latitude, meta, common.quiet);
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
   const SunReport report = report_of(a, date_s, place, surface);
   if (common.json) {
@@ -128,7 +129,7 @@ void add_sun(CLI::App& program, Common& common) {
   CLI::App* command = add_command(
       program, "sun", "Print clock, sun, rise and set over the skyline of a place on Mars", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command->add_option("--at", arguments->at, "LON,LAT of the place, degrees")->required();
+  command->add_option("--at", arguments->at, "LON,LAT of the place, degrees, or its name")->required();
   command->add_option("--date", arguments->date, "Date, as 2026-11-27T12:00Z; the answer is about its sol")
       ->required();
   add_latitude_option(*command, arguments->latitude);

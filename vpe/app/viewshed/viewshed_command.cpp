@@ -15,6 +15,7 @@
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/viewshed/commands.h"
@@ -43,14 +44,16 @@ struct ViewshedArguments {
   std::string output;
 };
 
-// Parses LON,LAT,HEIGHT, or a place in any notation.
-Observer parse_observer(const std::string& text, double height_m) {
+// Parses LON,LAT,HEIGHT, a place in any notation, or a name.
+Observer parse_observer(const std::string& text, const ViewshedArguments& a, const paging::PlanetMeta& meta,
+                        bool quiet) {
   const auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != 3) return {parse_place(text, "--at "), height_m};
+  if (!numbers || numbers->size() != 3)
+    return {place_on(given_place("--at", text), "--at", a.latitude, meta, quiet), a.from_height_m};
   if (!(std::abs((*numbers)[2]) <= kMostViewHeight_m) || (*numbers)[2] < 0)
     throw UsageError("--at '" + text + "': the height must be 0 to 1e9 metres above the ground");
   const std::string place = text.substr(0, text.rfind(','));
-  return {parse_place(place, "--at "), (*numbers)[2]};
+  return {planetocentric(parse_place(place, "--at "), a.latitude, meta, quiet), (*numbers)[2]};
 }
 
 void print_viewshed(const nlohmann::json& view, const std::string& output) {
@@ -88,10 +91,8 @@ ViewshedRequest request_of(const ViewshedArguments& a, const paging::PlanetMeta&
   if (a.at.size() > kMostObservers)
     throw UsageError("--at: " + std::to_string(a.at.size()) + " observers; at most " +
                      std::to_string(kMostObservers) + " are possible");
-  for (const std::string& text : a.at) request.observers.push_back(parse_observer(text, a.from_height_m));
-  for (Observer& observer : request.observers)
-    observer.place =
-        planetocentric(observer.place, a.latitude, meta, quiet || &observer != request.observers.data());
+  for (const std::string& text : a.at)
+    request.observers.push_back(parse_observer(text, a, meta, quiet || !request.observers.empty()));
   request.target_height_m = a.to_height_m;
   request.reach_m = a.reach_m;
   request.spacing_m = a.spacing_m;
@@ -174,7 +175,8 @@ void add_viewshed(CLI::App& program, Common& common) {
   command
       ->add_option(
           "--at", arguments->at,
-          "LON,LAT of an observer, degrees, or LON,LAT,HEIGHT of the eye above the ground; once for each")
+          "LON,LAT of an observer, degrees, or LON,LAT,HEIGHT of the eye above the ground, or the name of a "
+          "place; once for each")
       ->allow_extra_args(false)
       ->required();
   command->add_option("--from-height", arguments->from_height_m, "Height of eyes above the ground, metres")

@@ -9,7 +9,7 @@
 namespace vpe::explore {
 
 struct ArrivalLimits {
-  static constexpr double kUnknown_m = 20'000;  // diameter of places without one
+  static constexpr double kUnknown_m = 5000;    // diameter of places without one, as landing sites
   static constexpr double kFill = 0.7;          // of the image's shorter side
   static constexpr double kTilt_deg = -35;      // pitch for diameters up to kTilted_m
   static constexpr double kTilted_m = 200'000;  // larger places are seen more from above,
