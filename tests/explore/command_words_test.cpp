@@ -82,6 +82,27 @@ TEST_F(CommandWords, OfPanoramasLeaveOutOverlaysThatTheyDoNotHave) {
   EXPECT_TRUE(has_pair(words, "--set", "sun.elevation=12"));
 }
 
+TEST_F(CommandWords, OfAPlaceAreThoseOfPanoramaAndViewshed) {
+  MakeOptions options;
+  options.planet = "mars.vpe";
+  options.output = "p.jpg";
+  options.width_px = 4096;
+  const Words words = panorama_words_at(session_, {137.5, -4.25}, 2.5, options);
+  EXPECT_EQ(words, (Words{"panorama", "mars.vpe", "--at=137.5,-4.25", "--height=2.5", "--width", "4096", "-o",
+                          "p.jpg"}));
+  options.output = "v.tif";
+  EXPECT_EQ(viewshed_words({-137.5, 4.25}, 1.75, 15'000, options),
+            (Words{"viewshed", "mars.vpe", "--at=-137.5,4.25", "--from-height", "1.75", "--radius", "15000",
+                   "-o", "v.tif"}));
+}
+
+TEST(UsualReach, IsAThousandPostsWithinItsLimits) {
+  EXPECT_EQ(usual_reach_m(20, 3396190), 20'000);
+  EXPECT_EQ(usual_reach_m(0.1, 3396190), 1000);
+  EXPECT_EQ(usual_reach_m(8000, 3396190), 150'000);
+  EXPECT_LT(usual_reach_m(100, 500), 500 * mars::kPi / 2);
+}
+
 TEST_F(CommandWords, OfFilmsNameFlightPlanetAndSize) {
   MakeOptions options;
   options.planet = "mars.vpe";

@@ -144,6 +144,7 @@ TEST(Keyboard, CommonKeysHaveTheirUsualActions) {
       {"+", {ActionKind::kZoomIn}},
       {"Shift++", {ActionKind::kZoomIn}},
       {"-", {ActionKind::kZoomOut}},
+      {"O", {ActionKind::kOrthographic}},
       {"X", {ActionKind::kCatchCursor}},
       {"Ctrl++", {ActionKind::kLettersLarger}},
       {"Ctrl+Shift++", {ActionKind::kLettersLarger}},

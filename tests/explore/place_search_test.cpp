@@ -5,10 +5,14 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <set>
 
 #include "mars/embedded/data_files.h"
+#include "tests/support/support.h"
 #include "vpe/core/view.h"
 #include "vpe/explore/places/arrival.h"
+#include "vpe/explore/places/landing_sites.h"
 
 namespace vpe::explore {
 namespace {
@@ -109,6 +113,80 @@ TEST(PlaceSearch, TheCarriedNamesAreFound) {
   const auto found = search.find("olympus m", 8);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front()->name, "Olympus Mons");
+}
+
+TEST(LandingSites, TheCarriedFileHasAllThatAreKnown) {
+  const std::string file = mars::find_data_file(kLandingsFile);
+  ASSERT_FALSE(file.empty());
+  const std::vector<LandingSite> sites = read_landing_sites(file);
+  EXPECT_EQ(sites.size(), 15U);
+  std::set<std::string> names;
+  for (const LandingSite& site : sites) {
+    names.insert(site.name);
+    EXPECT_LE(std::abs(site.place.lon_deg), 180) << site.name;
+    EXPECT_LE(std::abs(site.place.lat_deg), 90) << site.name;
+    EXPECT_FALSE(site.mission.empty()) << site.name;
+    EXPECT_FALSE(site.source.empty()) << site.name;
+    EXPECT_EQ(site.landed.size(), 10U) << site.landed;
+    EXPECT_EQ(to_place(site), (core::Place{site.name, site.place.lon_deg, site.place.lat_deg, 0}));
+  }
+  EXPECT_EQ(names.size(), sites.size());
+  for (const char* name : {"Viking 1", "Curiosity", "Perseverance", "Zhurong", "Beagle 2"})
+    EXPECT_TRUE(names.contains(name)) << name;
+  // The file serves overlay.names, too.
+  EXPECT_EQ(core::read_gazetteer(file).size(), sites.size());
+}
+
+// Craters of the IAU whose rovers are known to be inside.
+TEST(LandingSites, LieInTheCratersThatTheyAreIn) {
+  const PlaceSearch search(core::read_gazetteer(mars::find_data_file("places/mars.csv")));
+  const std::vector<LandingSite> sites = read_landing_sites(mars::find_data_file(kLandingsFile));
+  for (const auto& [lander, crater] :
+       {std::pair{"Curiosity", "Gale"}, {"Perseverance", "Jezero"}, {"Spirit", "Gusev"}}) {
+    const auto site = std::ranges::find(sites, lander, &LandingSite::name);
+    const core::Place* around = search.named(crater);
+    ASSERT_NE(site, sites.end());
+    ASSERT_NE(around, nullptr);
+    EXPECT_LT(mars::distance_rad(site->place, {around->lon_deg, around->lat_deg}) * mars::kMarsRadius_m,
+              around->diameter_m / 2)
+        << lander;
+  }
+}
+
+TEST(LandingSites, AreDescribed) {
+  const LandingSite site{"L", {1, 2}, "M", "2000-01-02", "landing", {}, "S"};
+  EXPECT_EQ(describe(site), "landing of M, 2000-01-02, accuracy unknown");
+  EXPECT_EQ(describe({"L", {1, 2}, "M", "2000-01-02", "predicted", 1500, "S"}),
+            "predicted landing of M, 2000-01-02, accuracy 1500 m");
+}
+
+TEST(LandingSites, BadFilesAreRefused) {
+  const test_support::TempDir folder;
+  const std::string file = (folder / "sites.csv").string();
+  const auto error_of = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    try {
+      (void)read_landing_sites(file);
+    } catch (const std::exception& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string head = "name,lon,lat,mission,landed,kind,accuracy_m,source\n";
+  EXPECT_EQ(error_of(head + "a,1,2,m,2000-01-01,landing,5,s\n"), "");
+  EXPECT_EQ(error_of(head + "a,1,2,m,2000-01-01,landing,unknown,s\nb,1,2,m,2000-01-01,impact,7.5,s\n"), "");
+  for (const auto& [text, word] :
+       {std::pair<std::string, const char*>{head + "a,1,2,m,d,flight,5,s\n", "flight"},
+        {head + "a,1,2,m,d,landing,near,s\n", "near"},
+        {head + "a,1,2,m,d,landing,-1,s\n", "-1"},
+        {head + ",1,2,m,d,landing,1,s\n", "a name"},
+        {head + "a,1,95,m,d,landing,1,s\n", "95"},
+        {"name,lon,lat\na,1,2\n", "mission"}}) {
+    const std::string error = error_of(text);
+    EXPECT_NE(error.find(word), std::string::npos) << error;
+    EXPECT_NE(error.find("sites.csv"), std::string::npos) << error;
+  }
+  EXPECT_THROW((void)read_landing_sites((folder / "none.csv").string()), std::exception);
 }
 
 // The outline of a place, seen from where one arrives, lies in the image and fills it.

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/gdal_raster.h"
+#include "mars/raster/iau_crs.h"
 #include "mars/sources/source.h"
 #include "tests/mars/pds_files.h"
 #include "tests/mars/source_files.h"
@@ -223,6 +225,25 @@ TEST_F(IauCrs, WestDegreesOfTheWholePlanet) {
     SCOPED_TRACE(format);
     compare(49901, format, {-180, 180, -90, 90});
   }
+}
+
+// Names and codes are those of PROJ's own list.
+TEST(IauNames, HaveTheirCodes) {
+  EXPECT_EQ(mars::plain_crs_name("Mars (2015) / Ographic"), "Mars_2015_Ographic");
+  EXPECT_EQ(mars::plain_crs_name("Mars (2015) - Sphere / Ocentric"), "Mars_2015_Sphere_Ocentric");
+  EXPECT_EQ(mars::plain_crs_name("__a--b__"), "a_b");
+  EXPECT_EQ(mars::plain_crs_name(""), "");
+  const mars::GdalScope scope;
+  PJ_CONTEXT* context = proj_context_create();
+  for (const char* code : {"49900", "49901", "49902", "49910", "30100", "19900"}) {
+    PJ* crs = proj_create(context, ("IAU_2015:" + std::string(code)).c_str());
+    ASSERT_NE(crs, nullptr) << code;
+    EXPECT_EQ(mars::iau_code(mars::plain_crs_name(proj_get_name(crs))), code);
+    proj_destroy(crs);
+  }
+  proj_context_destroy(context);
+  EXPECT_FALSE(mars::iau_code("Vulcan_2015_Ographic"));
+  EXPECT_FALSE(mars::iau_code(""));
 }
 
 // Other bodies and projections that only have such a name stay as they are.

@@ -173,10 +173,10 @@ TEST_F(DrawingTest, TheMapTakesVerticesToo) {
 }
 
 TEST_F(DrawingTest, FilesAreWrittenAndOpened) {
-  open(960, 1000);
+  open(960, 1300);
   click("Draw");
   settle();
-  draw_triangle(400);
+  draw_triangle(600);
   EXPECT_TRUE(window_->drawing().drawings().is_changed());
   click("Save GeoJSON");
   settle();
@@ -185,6 +185,14 @@ TEST_F(DrawingTest, FilesAreWrittenAndOpened) {
   click("Save CSV##drawings");
   iterate(3);
   EXPECT_TRUE(fs::exists(folder_ / "drawings.csv"));
+  click("Save measures");
+  iterate(3);
+  EXPECT_TRUE(fs::exists(folder_ / "drawings-measures.geojson")) << window_->state().message;
+  click("Copy measures");
+  iterate(3);
+  const std::string copied = glfwGetClipboardString(window_->display().handle());
+  for (const char* part : {"Polygon 1", "area", "dip", "datum", "nodata", "synthetic"})
+    EXPECT_NE(copied.find(part), std::string::npos) << part << " in\n" << copied;
   click("Open##drawings");
   settle();
   ASSERT_EQ(drawings().size(), 2U);

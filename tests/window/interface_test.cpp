@@ -113,6 +113,41 @@ TEST_F(InterfaceTest, ASearchedPlaceIsFlownTo) {
   EXPECT_LT(distance_to({"", 20.5, 10.25, 0}), 0.02);
 }
 
+TEST_F(InterfaceTest, TabCompletesTheMarkedName) {
+  add_places();
+  open();
+  key("slash");
+  type("ga");
+  ASSERT_TRUE(window_->widgets().places().contains("found 0"));
+  key("Tab");
+  // The text is now the name, so that what follows belongs to it.
+  EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+  type(" x");
+  EXPECT_FALSE(window_->widgets().places().contains("found 0"));
+  key("BackSpace");
+  key("BackSpace");
+  ASSERT_TRUE(window_->widgets().places().contains("found 0"));
+  key("Return");
+  settle();
+  EXPECT_LT(distance_to({"", 137.8, -5.4, 0}), 0.2);
+  // The mark chooses what is completed.
+  key("slash");
+  type("olym");
+  key("Down");
+  key("Tab");
+  ASSERT_TRUE(window_->widgets().places().contains("found 0"));
+  EXPECT_FALSE(window_->widgets().places().contains("found 1"));
+  key("Return");
+  settle();
+  EXPECT_LT(distance_to({"", 178.5, 81.2, 0}), 0.5);
+  // A whole name has nothing to complete: Tab leaves the field.
+  key("slash");
+  type("gale");
+  key("Tab");
+  key("Tab");
+  EXPECT_FALSE(window_->widgets().places().contains("found 0"));
+}
+
 TEST_F(InterfaceTest, TheFirstInputEndsTheWelcome) {
   add_places();
   extra_.greets = true;

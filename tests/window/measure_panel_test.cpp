@@ -14,6 +14,7 @@
 
 #include "tests/explore/terrain_fixture.h"
 #include "vpe/explore/measure/profile_plot.h"
+#include "vpe/explore/results/ground_along.h"
 #include "vpe/window/panels/profile_plot_view.h"
 
 namespace vpe::window {
@@ -33,8 +34,12 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.DisplaySize = {1040, 2000};
-    io.ClipboardUserData = &logged_;
-    io.SetClipboardTextFn = [](void* to, const char* text) { *static_cast<std::string*>(to) = text; };
+    // Logs end in the clipboard, too.
+    io.ClipboardUserData = this;
+    io.SetClipboardTextFn = [](void* to, const char* text) {
+      auto& test = *static_cast<MeasurePanelTest*>(to);
+      (std::string(text).starts_with("A: ") ? test.copied_ : test.logged_) = text;
+    };
     unsigned char* pixels = nullptr;
     int width = 0;
     int height = 0;
@@ -72,7 +77,7 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGui::LogFinish();
     ImGui::End();
     logged_ = panel_text + logged_;
-    if (actions.go_to || !actions.message.empty()) actions_ = actions;
+    if (actions.go_to || actions.undoes || !actions.message.empty()) actions_ = actions;
     ImGui::Render();
     return logged_;
   }
@@ -138,9 +143,22 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
   Widgets widgets_;
   MeasureActions actions_;
   std::string logged_;
+  std::string copied_;
 };
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+std::string read(const std::filesystem::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
 
 TEST_F(MeasurePanelTest, ThePlaceUnderTheCursorIsReadOutAndStays) {
   session_->put({145, -20, 20000, 0, -90, 0});
@@ -369,19 +387,75 @@ TEST_F(MeasurePanelTest, TheProfileIsSavedWholeOrNotAtAll) {
   add_both();
   const test_support::TempDir folder;
   type("##file", (folder / "p.csv").string());
-  click("Save CSV");
+  click("Save##profile");
   ASSERT_FALSE(actions_.message.empty());
   EXPECT_FALSE(actions_.message_is_error) << actions_.message;
   std::ifstream file(folder / "p.csv");
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_EQ(text.str(), explore::to_csv(*panel_->measured()->profile));
-  click("Save CSV");
+  click("Save##profile");
   EXPECT_TRUE(has(actions_.message, "replaced")) << actions_.message;
   std::filesystem::remove_all(folder.path());
-  click("Save CSV");
+  click("Save##profile");
   EXPECT_TRUE(actions_.message_is_error);
   EXPECT_TRUE(has(actions_.message, (folder / "p.csv").string())) << actions_.message;
+}
+
+TEST_F(MeasurePanelTest, TheGroundOfThePathIsNamed) {
+  add_both();
+  const std::string all = text();
+  for (const explore::ReadOutLine& line :
+       explore::ground_lines(panel_->measured()->ground, surface().planet().meta()))
+    EXPECT_TRUE(has(all, line.text)) << line.label << " " << line.text << " in\n" << all;
+  for (const char* label : {"Datum", "Posts", "Error", "Nodata", "Synthetic"})
+    EXPECT_TRUE(has(all, label)) << label;
+}
+
+TEST_F(MeasurePanelTest, ResultsAreSavedAsFeaturesAndCopied) {
+  add_both();
+  const test_support::TempDir folder;
+  for (const char* name : {"p.geojson", "p.gpkg"}) {
+    type("##file", (folder / name).string());
+    click("Save##profile");
+    EXPECT_FALSE(actions_.message_is_error) << actions_.message;
+  }
+  const std::size_t points = panel_->measured()->profile->points.size();
+  EXPECT_EQ(count_of(read(folder / "p.geojson"), "\"part\": \"point\""), points);
+  EXPECT_EQ(count_of(read(folder / "p.geojson"), "\"part\": \"path\""), 1U);
+  EXPECT_TRUE(read(folder / "p.gpkg").starts_with("SQLite format 3"));
+  type("##file", (folder / "p.shp").string());
+  click("Save##profile");
+  EXPECT_TRUE(actions_.message_is_error);
+  EXPECT_TRUE(has(actions_.message, ".gpkg")) << actions_.message;
+  click("Copy##profile");
+  for (const char* part : {"A: -35.15000, 20.00000", "Great circle: ", "Line of sight: A and B do not",
+                           "Datum: ", "Synthetic: 0 %"})
+    EXPECT_TRUE(has(copied_, part)) << part << " in\n" << copied_;
+}
+
+TEST_F(MeasurePanelTest, WhatIsUndoneIsMeasuredAgain) {
+  explore::UndoHistory history;
+  history.join(panel_->path());
+  add_both();
+  panel_->add({-34.9, 20.1});
+  settle();
+  EXPECT_EQ(panel_->measured()->request.places.size(), 3U);
+  EXPECT_EQ(history.undo(), "measure point C");
+  EXPECT_FALSE(panel_->is_at_rest());
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  EXPECT_EQ(panel_->measured()->request.places.size(), 2U);
+  EXPECT_EQ(history.redo(), "measure point C");
+  settle();
+  EXPECT_EQ(panel_->measured()->request.places.size(), 3U);
+  panel_->begin_at(kEast);
+  EXPECT_EQ(panel_->points().size(), 1U);
+  panel_->go_on_to(kWest, {0, 0});
+  EXPECT_EQ(panel_->points().size(), 2U);
+  settle();
+  click("Undo##measure");
+  EXPECT_TRUE(actions_.undoes);
 }
 
 TEST_F(MeasurePanelTest, ThePanelMayBeDestroyedWhileItMeasures) {
@@ -436,14 +510,6 @@ TEST_F(MeasurePanelTest, MarksStandAtTheirPlacesAndHiddenOnesAreFaint) {
   // From the other side of the planet: nothing in full colour.
   const auto far = draw({145, -20, 5e6, 0, -90, 0});
   for (const ImDrawVert& v : far->VtxBuffer) EXPECT_NE(v.col, kMark);
-}
-
-TEST(PointNames, ContinueAfterZ) {
-  EXPECT_EQ(point_name(0), "A");
-  EXPECT_EQ(point_name(25), "Z");
-  EXPECT_EQ(point_name(26), "AA");
-  EXPECT_EQ(point_name(27), "AB");
-  EXPECT_EQ(point_name(26 + 26 * 26), "AAA");
 }
 
 }  // namespace

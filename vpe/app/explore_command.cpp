@@ -14,6 +14,7 @@
 #include "vpe/app/picture/comparison.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -95,8 +96,7 @@ void restore_overlays(const std::string& overlays, const RenderOptions& options,
 void add_places(const paging::PlanetMeta& meta, window::ExploreSetup& setup) {
   if (meta.body != "Mars") return;
   setup.places_file = mars::find_data_file(mars::kPlacesFile);
-  if (!setup.places_file.empty())
-    setup.places = vpe::explore::sights_first(core::read_gazetteer(setup.places_file));
+  if (!setup.places_file.empty()) setup.places = read_places_of("");
 }
 
 // Returns a command as a line for a shell.
@@ -323,7 +323,7 @@ void explore(const ExploreArguments& given, const Common& common) {
     make_interest_planetocentric(here.image.interest, here.latitude, planet->meta());
     window::ExploreSetup setup = make_setup(here, common, preferences, last);
     if (const ParsedPose named = here.pose.empty() ? ParsedPose{} : parse_pose("--pose", here.pose);
-        named.is_of_name) {
+        !named.name.empty()) {
       setup.session.start = resolve(named, planet, setup.session.settings.values().exaggeration);
     } else if (!here.pose.empty()) {
       mars::Pose& start = *setup.session.start;

@@ -1,17 +1,20 @@
 // vpe find.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
+#include "mars/embedded/data_files.h"
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/shell_word.h"
 #include "vpe/app/commands.h"
-#include "vpe/app/planet/named_places.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/places/landing_sites.h"
 #include "vpe/explore/places/place_search.h"
 
 namespace vpe::app {
@@ -27,7 +30,8 @@ struct FindArguments {
 
 struct FoundPlace {
   core::Place place;
-  std::optional<paging::PlaceAnswer> ground;  // with a planet
+  const explore::LandingSite* site = nullptr;  // that it is
+  std::optional<paging::PlaceAnswer> ground;   // with a planet
 };
 
 nlohmann::json found_json(const FoundPlace& found, double radius_m) {
@@ -43,6 +47,13 @@ nlohmann::json found_json(const FoundPlace& found, double radius_m) {
         {"yaw_deg", sight.yaw_deg},
         {"pitch_deg", sight.pitch_deg},
         {"height_m", sight.height_m}}}};
+  if (found.site != nullptr)
+    out["landing"] = {
+        {"mission", found.site->mission},
+        {"date", found.site->landed},
+        {"kind", found.site->kind},
+        {"accuracy_m", found.site->accuracy_m ? nlohmann::json(*found.site->accuracy_m) : nlohmann::json()},
+        {"source", found.site->source}};
   if (found.ground)
     out["elevation_m"] = found.ground->nodata ? nlohmann::json() : nlohmann::json(found.ground->elevation_m);
   return out;
@@ -53,10 +64,17 @@ std::string found_text(const FoundPlace& found) {
   std::string text = on_one_line(place.name) + ": " + base::format_fixed(place.lon_deg, 4) + "," +
                      base::format_fixed(place.lat_deg, 4);
   if (place.diameter_m > 0) text += ", " + base::format_significant(place.diameter_m / 1000, 4) + " km across";
+  if (found.site != nullptr) text += ", " + on_one_line(explore::describe(*found.site));
   if (found.ground)
     text += found.ground->nodata ? ", nodata"
                                  : ", elevation " + base::format_fixed(found.ground->elevation_m, 1) + " m";
   return text + "\n";
+}
+
+// Returns the program's landing sites; none if their file is not there.
+std::vector<explore::LandingSite> own_landing_sites() {
+  const std::string file = mars::find_data_file(explore::kLandingsFile);
+  return file.empty() ? std::vector<explore::LandingSite>() : explore::read_landing_sites(file);
 }
 
 void run_find(const FindArguments& arguments, const Common& common) {
@@ -66,6 +84,8 @@ void run_find(const FindArguments& arguments, const Common& common) {
     throw std::runtime_error(
         "no place has a name like '" + arguments.name + "' in " +
         (arguments.places.empty() ? std::string("the program's list of Mars") : arguments.places));
+  const std::vector<explore::LandingSite> sites =
+      arguments.places.empty() ? own_landing_sites() : std::vector<explore::LandingSite>();
   std::shared_ptr<const paging::PlanetFile> planet;
   std::unique_ptr<const paging::Surface> surface;
   if (!arguments.planet.empty()) {
@@ -75,7 +95,9 @@ void run_find(const FindArguments& arguments, const Common& common) {
   const double radius_m = planet ? planet->radius_m() : mars::kMarsRadius_m;
   nlohmann::json list = nlohmann::json::array();
   for (const core::Place* match : matches) {
-    FoundPlace found{*match, {}};
+    FoundPlace found{*match, nullptr, {}};
+    const auto site = std::ranges::find(sites, *match, explore::to_place);
+    if (site != sites.end()) found.site = &*site;
     if (surface) found.ground = paging::query(*surface, {match->lon_deg, match->lat_deg});
     if (common.json)
       list.push_back(found_json(found, radius_m));
@@ -106,11 +128,12 @@ void add_find(CLI::App& program, Common& common) {
   command->add_option("PLANET", arguments->planet, "Planet file or DEM: also print elevations");
   command->add_option("--places", arguments->places,
                       "Gazetteer, as CSV: of the IAU as it is downloaded, or with the columns name, lon, lat "
-                      "(default: the 1850 largest features of Mars)");
+                      "(default: the 1850 largest features of Mars, and the sites where spacecraft landed)");
   command->add_option("--limit", arguments->most, "Largest number of places")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_examples(*command, {{"a feature of Mars, and a command that draws it", "vpe find 'olympus mons'"},
+                          {"a landing site, and how exactly it is known", "vpe find curiosity"},
                           {"with elevations, for programs", "vpe find gale mars.vpe --json"},
                           {"in a list of one's own", "vpe find ridge --places stations.csv"}});
   command->callback([arguments, &common] { run_find(*arguments, common); });

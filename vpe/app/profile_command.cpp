@@ -7,17 +7,20 @@
 
 #include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/feature_output.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/places/named_places.h"
+#include "vpe/app/places/places.h"
 #include "vpe/app/planet/latitude_option.h"
-#include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/explore/measure/profile.h"
 #include "vpe/explore/measure/profile_plot.h"
+#include "vpe/explore/results/path_results.h"
 #include "vpe/report/plots/ground_plot.h"
 #include "vpe/report/plots/svg.h"
 
@@ -33,32 +36,8 @@ struct ProfileArguments {
   double step_m = 0;
   std::vector<double> limits_deg;
   std::string plot;
+  std::string output;
 };
-
-// Returns how many of the limits the facet at a point exceeds.
-int steepness(const paging::ProfilePoint& point, const std::vector<double>& limits_deg) {
-  if (point.nodata) return 0;
-  return static_cast<int>(
-      std::ranges::count_if(limits_deg, [&](double limit) { return point.cross_slope_deg > limit; }));
-}
-
-// Returns the largest limit that the facet at a point exceeds, or null.
-nlohmann::json exceeded(const paging::ProfilePoint& point, const std::vector<double>& limits_deg) {
-  const int count = steepness(point, limits_deg);
-  return count == 0 ? nlohmann::json() : nlohmann::json(limits_deg[static_cast<std::size_t>(count) - 1]);
-}
-
-nlohmann::json to_json(const paging::ProfilePoint& p) {
-  using nlohmann::json;
-  return {{"distance_m", p.distance_m},
-          {"ground_distance_m", p.ground_distance_m},
-          {"lon_deg", p.place.lon_deg},
-          {"lat_deg", p.place.lat_deg},
-          {"elevation_m", p.nodata ? json() : json(p.height_m)},
-          {"slope_deg", p.nodata ? json() : json(p.slope_deg)},
-          {"steepest_slope_deg", p.nodata ? json() : json(p.cross_slope_deg)},
-          {"place_given", p.waypoint}};
-}
 
 // Writes the profile as SVG.
 void write_plot(const explore::Profile& profile, const ProfileArguments& arguments,
@@ -84,7 +63,8 @@ void write_plot(const explore::Profile& profile, const ProfileArguments& argumen
   for (const paging::ProfilePoint& point : profile.points) {
     const auto at = std::min(
         columns.size() - 1, static_cast<std::size_t>(point.distance_m / length_m * static_cast<double>(count)));
-    plot.columns[at].steepness = std::max(plot.columns[at].steepness, steepness(point, arguments.limits_deg));
+    plot.columns[at].steepness =
+        std::max(plot.columns[at].steepness, explore::steepness(point, arguments.limits_deg));
     if (point.waypoint) plot.marks.push_back(point.distance_m / unit_m);
   }
   for (const double limit : arguments.limits_deg)
@@ -99,11 +79,14 @@ void write_plot(const explore::Profile& profile, const ProfileArguments& argumen
 }
 
 void run_profile(const ProfileArguments& arguments, const Common& common) {
-  auto [planet_name, places] = split_places(arguments.places);
-  if (places.empty()) places = read_places(std::cin).places;
-  if (places.size() < 2) throw UsageError("a profile needs at least two places, LON,LAT in degrees");
+  const auto [planet_name, given] = split_places(arguments.places);
+  std::vector<mars::LonLat> places;
+  if (given.empty()) places = read_places(std::cin).places;
+  if (std::max(places.size(), given.size()) < 2)
+    throw UsageError("a profile needs at least two places, LON,LAT in degrees");
   if (!std::ranges::is_sorted(arguments.limits_deg) || arguments.limits_deg.size() > kMostLimits)
     throw UsageError("--limit takes at most three slopes, in rising order");
+  check_feature_output(arguments.output, planet_name);
   if (!arguments.plot.empty()) {
     if (std::filesystem::path(arguments.plot).extension() != ".svg")
       throw UsageError("--plot writes SVG: give a file that ends in .svg");
@@ -112,7 +95,10 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
-  make_planetocentric(places, arguments.latitude, meta, common.quiet);
+  if (given.empty())
+    make_planetocentric(places, arguments.latitude, meta, common.quiet);
+  else
+    places = places_on(given, arguments.latitude, meta, common.quiet);
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
   explore::Profile profile;
   try {
@@ -121,24 +107,13 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
     throw UsageError(e.what());
   }
   if (!arguments.plot.empty()) write_plot(profile, arguments, meta);
-  if (common.json) {
-    nlohmann::json list = nlohmann::json::array();
-    double resampling_max_m = 0;
-    std::int64_t compared = 0;
-    for (const paging::ProfilePoint& p : profile.points) {
-      list.push_back(to_json(p));
-      if (!arguments.limits_deg.empty()) list.back()["steeper_than_deg"] = exceeded(p, arguments.limits_deg);
-      const paging::ResamplingError here = paging::query(surface, p.place).resampling;
-      resampling_max_m = std::max(resampling_max_m, here.max_m);
-      compared += here.posts;
-    }
-    print_json({{"datum", to_string(meta.datum)},
-                {"radius_m", meta.radius_m},
-                {"illustration", meta.illustration},
-                {"resampling_max_m", compared > 0 ? nlohmann::json(resampling_max_m) : nlohmann::json()},
-                {"planet_resampling_max_m", meta.resampling.max_m},
-                {"points", std::move(list)}});
-    return;
+  if (common.json || !arguments.output.empty()) {
+    const nlohmann::json result = explore::profile_json(
+        profile, explore::ground_of_profile(surface, profile.points), meta, arguments.limits_deg);
+    if (!arguments.output.empty())
+      mars::write_features(arguments.output, explore::profile_layer(result, places),
+                           explore::result_info("profile: the ground along great circles", meta));
+    if (common.json) return print_json(result);
   }
   std::fputs(explore::profile_csv_header().c_str(), stdout);
   for (const paging::ProfilePoint& p : profile.points) std::fputs(explore::profile_csv_line(p).c_str(), stdout);
@@ -152,7 +127,7 @@ void add_profile(CLI::App& program, Common& common) {
       add_command(program, "profile", "Print heights, slopes and distances along great circles", common, true);
   command->add_option(
       "PLANET_AND_PLACES", arguments->places,
-      "[PLANET] LON,LAT LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are "
+      "[PLANET] LON,LAT LON,LAT... (degrees east, north, or as 4.6S,222.6W, or names); without places, they are "
       "read from stdin");
   add_latitude_option(*command, arguments->latitude);
   command
@@ -166,12 +141,15 @@ void add_profile(CLI::App& program, Common& common) {
       ->delimiter(',')
       ->check(number_within(0, 90));
   command->add_option("--plot", arguments->plot, "Also draw the profile (.svg)");
+  add_feature_output(*command, arguments->output, "Also write path and points as features");
   add_examples(*command,
                {{"heights every 2 km along a great circle",
                  "vpe profile mars.vpe -70,-13 -60,-14 --step 2000 > profile.csv"},
                 {"a way over three places", "vpe profile mars.vpe 137.30,-4.60 137.37,-4.67 137.45,-4.75"},
                 {"a plot with the ground that is too steep for a rover",
-                 "vpe profile mars.vpe 137.30,-4.60 137.45,-4.75 --limit 15,25 --plot way.svg > way.csv"}});
+                 "vpe profile mars.vpe 137.30,-4.60 137.45,-4.75 --limit 15,25 --plot way.svg > way.csv"},
+                {"path and points for a geographic information system",
+                 "vpe profile mars.vpe 137.30,-4.60 137.45,-4.75 -o way.gpkg > way.csv"}});
   command->callback([arguments, &common] { run_profile(*arguments, common); });
 }
 

@@ -8,6 +8,7 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/planet/measured_part.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/results/feature_table.h"
 
 namespace vpe::app {
 
@@ -124,7 +125,8 @@ std::string input_cells(const std::vector<std::string>& values) {
 
 }  // namespace
 
-void print_json_answers(const QueryAnswers& answers, const PlaceTable& table, const paging::PlanetMeta& meta) {
+nlohmann::json answers_json(const QueryAnswers& answers, const PlaceTable& table,
+                            const paging::PlanetMeta& meta) {
   const std::vector<double> measured_m = measured_parts_m(answers.ground, meta);
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t n = 0; n < answers.ground.size(); ++n) {
@@ -142,7 +144,27 @@ void print_json_answers(const QueryAnswers& answers, const PlaceTable& table, co
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       answer["input"][table.columns[c]] = table.cells[n][c];
   }
-  print_json(list);
+  return list;
+}
+
+mars::FeatureLayer answers_layer(const nlohmann::json& answers) {
+  explore::FeatureTable table("query");
+  for (const nlohmann::json& answer : answers) {
+    const mars::LonLat place{answer.at("lon_deg").get<double>(), answer.at("lat_deg").get<double>()};
+    const auto surfaces = answer.find("surfaces");
+    if (surfaces == answer.end()) {
+      table.add("", answer, {explore::point_shape(place)});
+      continue;
+    }
+    nlohmann::json ground = answer;
+    ground.erase("surfaces");
+    for (const nlohmann::json& surface : *surfaces) {
+      nlohmann::json one = ground;
+      one.update(surface);
+      table.add("", one, {explore::point_shape(place)});
+    }
+  }
+  return table.layer();
 }
 
 void print_csv_answers(const QueryAnswers& answers, const PlaceTable& table, const paging::PlanetMeta& meta) {

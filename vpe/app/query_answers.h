@@ -1,11 +1,13 @@
-// The answers of vpe query on standard output: a table in CSV, or JSON.
+// The answers of vpe query: a table in CSV, JSON, or features.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
+#include "mars/vector/feature.h"
 #include "paging/surface/query.h"
-#include "vpe/app/planet/places.h"
+#include "vpe/app/places/places.h"
 #include "vpe/app/scene/place_surfaces.h"
 
 namespace vpe::app {
@@ -17,8 +19,12 @@ struct QueryAnswers {
   std::optional<std::vector<std::vector<PlaceSurface>>> surfaces;  // where all are asked for
 };
 
-// Prints an array with an object for each place.
-void print_json_answers(const QueryAnswers& answers, const PlaceTable& table, const paging::PlanetMeta& meta);
+// Returns an array with an object for each place.
+nlohmann::json answers_json(const QueryAnswers& answers, const PlaceTable& table,
+                            const paging::PlanetMeta& meta);
+
+// Returns a point for each place of answers_json(), or for each surface of each place where all are asked for.
+mars::FeatureLayer answers_layer(const nlohmann::json& answers);
 
 // Prints a table in CSV with a line for each place, or for each surface of each place where all are asked for.
 // Further columns of the places' table come last; those with names that the answer has itself get the prefix

@@ -8,14 +8,18 @@
 #include <utility>
 
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/feature_output.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/places/named_places.h"
+#include "vpe/app/places/places.h"
 #include "vpe/app/planet/latitude_option.h"
-#include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/query_answers.h"
 #include "vpe/app/scene/scene_library.h"
 #include "vpe/base/parallel.h"
+#include "vpe/explore/results/path_results.h"
 
 namespace vpe::app {
 
@@ -25,6 +29,7 @@ struct QueryArguments {
   std::vector<std::string> planet_and_places;
   std::string scene;
   std::string latitude;
+  std::string output;
   bool all_surfaces = false;
   bool fail_on_nodata = false;
 };
@@ -59,14 +64,17 @@ void add_objects(const QueryArguments& arguments, const paging::Surface& surface
 }
 
 void query(const QueryArguments& arguments, const Common& common) {
-  PlanetAndPlaces request = split_places(arguments.planet_and_places);
+  const PlanetAndPlaces request = split_places(arguments.planet_and_places);
   PlaceTable table;
-  table.places = std::move(request.places);
-  if (table.places.empty()) table = read_places(std::cin);
+  if (request.places.empty()) table = read_places(std::cin);
+  check_feature_output(arguments.output, request.planet);
   const auto planet = open_planet(request.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
-  make_planetocentric(table.places, arguments.latitude, meta, common.quiet);
+  if (request.places.empty())
+    make_planetocentric(table.places, arguments.latitude, meta, common.quiet);
+  else
+    table.places = places_on(request.places, arguments.latitude, meta, common.quiet);
   const std::vector<mars::LonLat>& places = table.places;
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
 
@@ -91,11 +99,14 @@ void query(const QueryArguments& arguments, const Common& common) {
   });
 
   add_objects(arguments, surface, places, common.quiet, pool, answers);
-  if (common.json) {
-    print_json_answers(answers, table, meta);
-  } else {
-    print_csv_answers(answers, table, meta);
+  if (common.json || !arguments.output.empty()) {
+    const nlohmann::json result = answers_json(answers, table, meta);
+    if (!arguments.output.empty())
+      mars::write_features(arguments.output, answers_layer(result),
+                           explore::result_info("query: the ground at places", meta));
+    if (common.json) print_json(result);
   }
+  if (!common.json) print_csv_answers(answers, table, meta);
   const auto without =
       std::count_if(answers.ground.begin(), answers.ground.end(), [](const auto& a) { return a.nodata; });
   if (arguments.fail_on_nodata && without > 0)
@@ -111,7 +122,7 @@ void add_query(CLI::App& program, Common& common) {
       program, "query", "Print elevation, slope, level (from 0), source and error at places", common, true);
   command->add_option(
       "PLANET_AND_PLACES", arguments->planet_and_places,
-      "[PLANET] LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are read "
+      "[PLANET] LON,LAT... (degrees east, north, or as 4.6S,222.6W, or names); without places, they are read "
       "from stdin, one a line or as a table with columns lon and lat");
   add_latitude_option(*command, arguments->latitude);
   command->add_option(
@@ -121,14 +132,18 @@ void add_query(CLI::App& program, Common& common) {
       "--all-surfaces", arguments->all_surfaces,
       "Print every surface along the vertical through a place, from the highest to the lowest: the "
       "ground, and tops and undersides of the objects of --with-objects");
+  add_feature_output(*command, arguments->output, "Also write the places and the answers as features");
   command->add_flag("--fail-on-nodata", arguments->fail_on_nodata,
                     "Exit with status 1 after the answers if a place has no data");
   add_examples(*command, {{"two places, longitude first", "vpe query mars.vpe -59.2,-13.7 226.875,17.375"},
                           {"a place as on maps", "vpe query mars.vpe 13.7S,59.2W"},
+                          {"at a landing site", "vpe query mars.vpe Curiosity"},
                           {"the ground as one of all surfaces; --with-objects SCENE adds those of objects",
                            "vpe query mars.vpe --all-surfaces -59.2,-13.7"},
                           {"a table of places with a header that names lon and lat",
-                           "vpe query mars.vpe --json < places.csv"}});
+                           "vpe query mars.vpe --json < places.csv"},
+                          {"the same as points for a geographic information system",
+                           "vpe query mars.vpe -o places.gpkg < places.csv > answers.csv"}});
   command->callback([arguments, &common] { query(*arguments, common); });
 }
 

@@ -16,11 +16,12 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/places/places.h"
 #include "vpe/app/planet/latitude_option.h"
-#include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/traverse/stamped_way.h"
 #include "vpe/explore/traverse/tour.h"
 #include "vpe/explore/traverse/traverse.h"
 
@@ -42,6 +43,8 @@ struct TraverseArguments {
   std::optional<double> step_m;
   double limit_deg = explore::VehicleOptions{}.steepest_deg;
   int way = 0;  // from 1; 0: all
+  std::string layer;
+  std::optional<double> time_scale;
   bool fail_on_slope = false;
 };
 
@@ -73,10 +76,17 @@ std::vector<mars::KmlPoint> points_of(const std::vector<mars::KmlWay>& ways, int
   return all;
 }
 
-bool is_kml(const std::string& file) {
+bool ends_as(const std::string& file, std::initializer_list<std::string_view> extensions) {
   std::string end = fs::path(file).extension().string();
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return end == ".kml" || end == ".kmz";
+  return std::ranges::find(extensions, end) != extensions.end();
+}
+
+bool is_kml(const std::string& file) { return ends_as(file, {".kml"}); }
+
+// Tables and KML have readers of their own.
+bool is_vector(const std::string& file) {
+  return ends_as(file, {".gpx", ".geojson", ".json", ".gpkg", ".shp", ".kmz"});
 }
 
 std::vector<mars::KmlPoint> read_kml(const TraverseArguments& arguments) {
@@ -86,7 +96,7 @@ std::vector<mars::KmlPoint> read_kml(const TraverseArguments& arguments) {
 }
 
 std::vector<mars::KmlPoint> read_table(const TraverseArguments& arguments) {
-  if (arguments.way > 0) throw UsageError("--way is for KML files; a table has one way");
+  if (arguments.way > 0) throw UsageError("--way is for KML and vector files; a table has one way");
   PlaceTable table;
   if (arguments.file == "-") {
     table = read_places(std::cin);
@@ -99,6 +109,19 @@ std::vector<mars::KmlPoint> read_table(const TraverseArguments& arguments) {
   std::vector<mars::KmlPoint> points(table.places.size());
   for (std::size_t n = 0; n < points.size(); ++n) points[n].place = table.places[n];
   return points;
+}
+
+// Returns the points of the chosen way of a vector file, or of all its ways one after the other.
+std::vector<explore::WayPoint> read_vector(const TraverseArguments& arguments, double planet_radius_m) {
+  const std::vector<explore::FileWay> ways =
+      explore::read_ways(arguments.file, arguments.layer, planet_radius_m);
+  if (static_cast<std::size_t>(arguments.way) > ways.size())
+    throw UsageError("--way " + std::to_string(arguments.way) + ": " + arguments.file + " has " +
+                     std::to_string(ways.size()) + (ways.size() == 1 ? " way" : " ways"));
+  if (arguments.way > 0) return ways[static_cast<std::size_t>(arguments.way) - 1].points;
+  std::vector<explore::WayPoint> all;
+  for (const explore::FileWay& way : ways) all.insert(all.end(), way.points.begin(), way.points.end());
+  return all;
 }
 
 // Queries the surface. Tiles that cannot be read are errors.
@@ -166,9 +189,58 @@ explore::TraverseOptions options_of(const TraverseArguments& arguments) {
   return options;
 }
 
+explore::Traverse vector_traverse(const TraverseArguments& arguments, const explore::TerrainQuery& ground) {
+  const std::vector<explore::WayPoint> points = read_vector(arguments, ground.radius_m);
+  explore::StampOptions stamps;
+  stamps.keeps_times = !arguments.speed_m_s;
+  stamps.scale = arguments.time_scale.value_or(1);
+  if (arguments.time_scale && !explore::has_times(points))
+    throw UsageError("--time-scale: the points of " + arguments.file + " have no times; give --speed");
+  return explore::make_stamped_traverse(points, options_of(arguments), stamps, ground);
+}
+
+void check_vector_options(const TraverseArguments& arguments) {
+  if (is_vector(arguments.file)) {
+    if (!arguments.latitude.empty())
+      throw UsageError("--latitude is for tables and KML; " + arguments.file + " names its own coordinates");
+    if (arguments.time_scale && arguments.speed_m_s)
+      throw UsageError("--time-scale and --speed: leave one out");
+    return;
+  }
+  if (!arguments.layer.empty() || arguments.time_scale)
+    throw UsageError("--layer and --time-scale are for GPX, GeoJSON, GeoPackage, Shapefile and KMZ");
+}
+
+void write_traverse(const explore::Traverse& traverse, const TraverseArguments& arguments,
+                    const Common& common) {
+  std::string text = scripts::to_text(traverse.flight);
+  const std::string head = scripts::version_line(scripts::version_of(traverse.flight));
+  text.insert(head.size(), "# traverse of vpe: " + on_one_line(arguments.file) + ", by " + arguments.by + "\n");
+  base::write_file(arguments.output, text);
+  report(traverse, arguments, common);
+}
+
+void run_vector_traverse(const TraverseArguments& arguments, const Common& common) {
+  const auto planet = open_planet(arguments.planet, common);
+  note_illustration(planet->meta(), common.quiet);
+  const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
+  explore::Traverse traverse;
+  try {
+    traverse = vector_traverse(arguments, terrain_of(surface));
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(arguments.file + ": " + e.what());
+  }
+  write_traverse(traverse, arguments, common);
+}
+
 void run_traverse(const TraverseArguments& arguments, const Common& common) {
   check_outputs({{"-o", arguments.output, FileKind::kTraverse}},
                 {arguments.file == "-" ? "" : arguments.file, arguments.planet});
+  check_vector_options(arguments);
+  if (is_vector(arguments.file)) {
+    run_vector_traverse(arguments, common);
+    return;
+  }
   std::vector<mars::KmlPoint> points = is_kml(arguments.file) ? read_kml(arguments) : read_table(arguments);
   const auto planet = open_planet(arguments.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
@@ -191,11 +263,7 @@ void run_traverse(const TraverseArguments& arguments, const Common& common) {
   } catch (const std::invalid_argument& e) {
     throw UsageError(arguments.file + ": " + e.what());
   }
-  std::string text = scripts::to_text(traverse.flight);
-  const std::string head = scripts::version_line(scripts::version_of(traverse.flight));
-  text.insert(head.size(), "# traverse of vpe: " + on_one_line(arguments.file) + ", by " + arguments.by + "\n");
-  base::write_file(arguments.output, text);
-  report(traverse, arguments, common);
+  write_traverse(traverse, arguments, common);
 }
 
 }  // namespace
@@ -209,7 +277,8 @@ void add_traverse(CLI::App& program, Common& common) {
   command
       ->add_option(
           "FILE", arguments->file,
-          "Way: KML (LineString, gx:Track, gx:Tour), or a table of places as for 'vpe query'; - = stdin")
+          "Way: lines, tracks or points of a GPX, GeoJSON, GeoPackage, Shapefile or KMZ file; KML (LineString, "
+          "gx:Track, gx:Tour); or a table of places as for 'vpe query', - = stdin")
       ->required();
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("-o,--output", arguments->output, "Flight to write, for 'vpe fly' and 'vpe explore'")
@@ -222,9 +291,9 @@ void add_traverse(CLI::App& program, Common& common) {
       ->check(CLI::IsMember({"walk", "drive", "height"}))
       ->capture_default_str();
   command
-      ->add_option(
-          "--speed", arguments->speed_m_s,
-          "Metres a second (default: walk 1.4 on level ground, drive 2, height 50, views of a tour 1000)")
+      ->add_option("--speed", arguments->speed_m_s,
+                   "Metres a second (default: times of a vector file's points, where it has them; walk "
+                   "1.4 on level ground, drive 2, height 50, views of a tour 1000)")
       ->check(number_within(O::kMinSpeed_m_s, O::kMaxSpeed_m_s));
   command
       ->add_option("--eye", arguments->camera_height_m,
@@ -241,14 +310,22 @@ void add_traverse(CLI::App& program, Common& common) {
       ->capture_default_str();
   command->add_flag("--fail-on-slope", arguments->fail_on_slope,
                     "Exit with status 1, after writing, if a pose is on a slope beyond the limit");
-  command->add_option("--way", arguments->way, "Number of the way in a KML file (default: all, joined)")
+  command
+      ->add_option("--way", arguments->way, "Number of the way in a KML or vector file (default: all, joined)")
       ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--layer", arguments->layer, "Layer of a vector file (default: all)");
+  command
+      ->add_option("--time-scale", arguments->time_scale,
+                   "How many times faster the flight is than the times of a vector file's points")
+      ->check(number_within(explore::StampOptions::kLeastScale, explore::StampOptions::kMostScale));
   add_latitude_option(*command, arguments->latitude);
   add_examples(*command,
                {{"a walk along the places of a table", "vpe traverse places.csv mars.vpe -o walk.flight"},
                 {"a rover's way, and a film of it",
                  "vpe traverse rover.kml gale.vpe --by drive -o rover.flight && vpe fly rover.flight gale.vpe "
                  "-o rover.mp4"},
+                {"a track with its times, ten times as fast",
+                 "vpe traverse track.gpx mars.vpe --by drive --time-scale 10 -o track.flight"},
                 {"the views of a tour", "vpe traverse tour.kml mars.vpe --by height -o tour.flight"}});
   command->callback([arguments, &common] { run_traverse(*arguments, common); });
 }

@@ -5,6 +5,7 @@
 
 #include "paging/planet/planet_user.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/layer_check.h"
 #include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/window/moved_image.h"
@@ -143,14 +144,18 @@ Common share_of(Common common, const paging::PlanetFile& planet) {
 }  // namespace
 
 // The earlier planet is compared with itself, so that the same settings draw it: its differences are 0.
-void WindowPainter::draw_earlier(const core::DrawRequest& request, double time_s, window::DrawnImage& drawn) {
+void WindowPainter::draw_earlier(const core::DrawRequest& request, const window::ImageRequest& asked,
+                                 window::DrawnImage& drawn) {
   if (earlier_renderer_ == nullptr) {
     const auto earlier = planet_->earlier()->compared_with(planet_->earlier());
     earlier_renderer_ = make_renderer(with_backend(*backend_), share_of(common_, *planet_), earlier);
     earlier_overlays_ = std::make_unique<FrameOverlays>(earlier);
   }
+  if (asked.layers) earlier_overlays_->use_layers(*asked.layers);
+  core::DrawRequest of_earlier = request;
+  (void)leave_out_layers(of_earlier.settings, *planet_->earlier());
   core::DrawResult result =
-      with_overlays(request, earlier_renderer_->draw(request), time_s, *earlier_overlays_);
+      with_overlays(request, earlier_renderer_->draw(of_earlier), asked.flight_time_s, *earlier_overlays_);
   add_grid(request, result, drawn.earlier_grids);
   drawn.result.settled = drawn.result.settled && result.settled;
   for (std::string& failure : result.failures) drawn.result.failures.push_back(std::move(failure));
@@ -206,7 +211,9 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     backend_ = backend;
   }
   change_ground(request);
+  if (request.layers) overlays_.use_layers(*request.layers);
   core::DrawRequest draw_request = std::move(as_asked.draw);
+  const std::string left_out = leave_out_layers(draw_request.settings, *planet_);
   draw_request.paging.change_wait_s = change_s_;
   draw_request.time_s = request.flight_time_s;
   if (changes) {
@@ -217,15 +224,21 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   window::DrawnImage drawn;
   if (shown_ != planet_) drawn.changed = shown_;
   const bool has_other_palette = take_palette(draw_request, drawn);
+  const auto tell_left_out = [&] {
+    if (!left_out.empty() && left_out != told_) drawn.result.failures.push_back(left_out);
+    told_ = left_out;
+  };
   if (request.stereo) {
     draw_pair(request, draw_request, drawn);
+    tell_left_out();
     drawn.result.settled = drawn.result.settled && !has_other_palette;
     return drawn;
   }
   draw_request.view = core::with_margin(draw_request.view, request.margin_px);
   drawn.result = draw(draw_request, request.flight_time_s);
+  tell_left_out();
   drawn.result.settled = drawn.result.settled && !has_other_palette;
-  if (request.with_earlier && planet_->earlier()) draw_earlier(draw_request, request.flight_time_s, drawn);
+  if (request.with_earlier && planet_->earlier()) draw_earlier(draw_request, request, drawn);
   core::Frame& frame = drawn.result.frame;
   add_grid(draw_request, drawn.result, drawn.grids);
   if (request.keeps_ranges && !drawn.grids.empty()) drawn.range_m = std::move(frame.range_m);

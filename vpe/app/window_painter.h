@@ -39,7 +39,8 @@ class WindowPainter : public window::Painter {
   core::DrawResult draw(const core::DrawRequest& request, double time_s, Eye eye = Eye::kMiddle);
   core::DrawResult with_overlays(const core::DrawRequest& request, core::DrawResult result, double time_s,
                                  FrameOverlays& overlays) const;
-  void draw_earlier(const core::DrawRequest& request, double time_s, window::DrawnImage& drawn);
+  void draw_earlier(const core::DrawRequest& request, const window::ImageRequest& asked,
+                    window::DrawnImage& drawn);
   // Returns what carries second eyes, or null if they are drawn in full.
   CarriedDrawer* drawer_for(const core::DrawRequest& request, Eye eye);
   void draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
@@ -73,6 +74,7 @@ class WindowPainter : public window::Painter {
   std::optional<Sight> palette_of_;
   std::optional<Sight> before_;
   core::PaletteEnds ends_;
+  std::string told_;  // that image layers are left out
 };
 
 }  // namespace vpe::app

@@ -44,6 +44,31 @@ std::vector<std::string> command(const char* name, const MakeOptions& options) {
   return words;
 }
 
+std::string lon_lat_word(mars::LonLat place) {
+  return format_number(place.lon_deg) + "," + format_number(place.lat_deg);
+}
+
+// `height` is the word of the camera's height or altitude.
+std::vector<std::string> panorama_command(const Session& session, mars::LonLat place, const std::string& height,
+                                          const MakeOptions& options) {
+  std::vector<std::string> words = command("panorama", options);
+  words.push_back("--at=" + lon_lat_word(place));
+  words.push_back(height);
+  if (options.width_px > 0) {
+    words.emplace_back("--width");
+    words.push_back(std::to_string(options.width_px));
+  }
+  add_settings(
+      session,
+      [&](std::string_view key) {
+        return !key.starts_with(kOverlays) ||
+               (options.has_overlays && std::ranges::count(kOfPanoramas, key) > 0);
+      },
+      words);
+  add_output(options, words);
+  return words;
+}
+
 }  // namespace
 
 std::vector<std::string> image_words(const Session& session, const MakeOptions& options) {
@@ -102,21 +127,31 @@ std::vector<std::string> film_words(const Session& session, const std::string& f
 }
 
 std::vector<std::string> panorama_words(const Session& session, const MakeOptions& options) {
-  std::vector<std::string> words = command("panorama", options);
-  words.push_back("--at=" + format_number(session.pose().lon_deg) + "," +
-                  format_number(session.pose().lat_deg));
-  words.emplace_back("--altitude=" + format_number(session.pose().alt_m));
-  if (options.width_px > 0) {
-    words.emplace_back("--width");
-    words.push_back(std::to_string(options.width_px));
-  }
-  add_settings(
-      session,
-      [&](std::string_view key) {
-        return !key.starts_with(kOverlays) ||
-               (options.has_overlays && std::ranges::count(kOfPanoramas, key) > 0);
-      },
-      words);
+  return panorama_command(session, {session.pose().lon_deg, session.pose().lat_deg},
+                          "--altitude=" + format_number(session.pose().alt_m), options);
+}
+
+std::vector<std::string> panorama_words_at(const Session& session, mars::LonLat place, double height_m,
+                                           const MakeOptions& options) {
+  return panorama_command(session, place, "--height=" + format_number(height_m), options);
+}
+
+double usual_reach_m(double post_spacing_m, double planet_radius_m) {
+  constexpr double kPosts = 1000;
+  constexpr double kLeast_m = 1000;
+  constexpr double kMost_m = 150'000;
+  const double quarter_m = planet_radius_m * mars::kPi / 2;
+  return std::min(std::clamp(kPosts * post_spacing_m, kLeast_m, kMost_m), 0.99 * quarter_m);
+}
+
+std::vector<std::string> viewshed_words(mars::LonLat place, double height_m, double reach_m,
+                                        const MakeOptions& options) {
+  std::vector<std::string> words = command("viewshed", options);
+  words.push_back("--at=" + lon_lat_word(place));
+  words.emplace_back("--from-height");
+  words.push_back(format_number(height_m));
+  words.emplace_back("--radius");
+  words.push_back(format_number(reach_m));
   add_output(options, words);
   return words;
 }

@@ -37,4 +37,17 @@ std::vector<std::string> film_words(const Session& session, const std::string& f
 // distances and compass. The width is that of the full circle; 0: the program chooses.
 std::vector<std::string> panorama_words(const Session& session, const MakeOptions& options);
 
+// Returns likewise the words for a camera at another place, this high above the ground there, metres.
+std::vector<std::string> panorama_words_at(const Session& session, mars::LonLat place, double height_m,
+                                           const MakeOptions& options);
+
+// Returns how far `vpe viewshed` looks where nothing else is said, metres: a thousand posts of this spacing, but not less
+// than 1 km, and not more than 150 km or a quarter of the planet's circumference.
+double usual_reach_m(double post_spacing_m, double planet_radius_m);
+
+// Returns the words of `vpe viewshed` around a place, for an eye this high above the ground. Of the options only planet
+// and output count; the posts are those of the planet there.
+std::vector<std::string> viewshed_words(mars::LonLat place, double height_m, double reach_m,
+                                        const MakeOptions& options);
+
 }  // namespace vpe::explore

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "vpe/explore/orthographic.h"
 #include "vpe/explore/steer.h"
 
 namespace vpe::explore {
@@ -158,7 +159,7 @@ Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor
   const mars::LonLat place = mars::lon_lat(there);
   next.lon_deg = place.lon_deg;
   next.lat_deg = place.lat_deg;
-  next.alt_m = std::min(glm::length(there) - ground.radius_m, SteerLimits::kHighest_radii * ground.radius_m);
+  next.alt_m = std::min(glm::length(there) - ground.radius_m, ground.highest_radii * ground.radius_m);
   return kept_clear(held_under(next, screen, *point, xy, ground.radius_m), ground);
 }
 
@@ -210,7 +211,7 @@ Pose overview(mars::LonLat place, const Screen& screen, double radius_m) {
   const double horizontal_rad = std::atan(std::tan(vertical_rad) * screen.width / screen.height);
   const double half_rad = std::min(vertical_rad, horizontal_rad) * 0.9;
   Pose pose{place.lon_deg, place.lat_deg, 0, 0, -90, 0};
-  pose.alt_m = std::min(radius_m / std::sin(half_rad) - radius_m, SteerLimits::kHighest_radii * radius_m);
+  pose.alt_m = std::min(radius_m / std::sin(half_rad) - radius_m, highest_radii(screen.fov_deg) * radius_m);
   return pose;
 }
 

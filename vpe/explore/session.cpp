@@ -40,7 +40,7 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
       interest_(options.interest),
       mouse_(options.mouse),
       mover_(options.vehicle) {
-  ground_ = ground_of(surface_, settings_.values().exaggeration);
+  use_ground();
   set_fov(options.fov_deg);
   pose_ = kept_clear(options.start ? *options.start : overview({0, 0}, screen_, ground_.radius_m), ground_);
 }
@@ -48,14 +48,14 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
 void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
   surface_ = std::move(surface);
   flights_.set_terrain(terrain_height_of(surface_));
-  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  use_ground();
   if (!follows_) pose_ = mover_.put(pose_, ground_);
   ++changes_;
 }
 
 void Session::set_changed_surface(std::shared_ptr<const paging::Surface> surface) {
   surface_ = std::move(surface);
-  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  use_ground();
   if (!follows_) pose_ = mover_.put(pose_, ground_);
 }
 
@@ -114,7 +114,7 @@ void Session::follow_settings() {
   shown_settings_ = next;
   ++changes_;
   if (shown_settings_.values().exaggeration == before) return;
-  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  use_ground();
   if (!follows_) pose_ = mover_.put(pose_, ground_);
 }
 
@@ -138,7 +138,9 @@ void Session::resize(int width, int height) {
 
 void Session::set_fov(double fov_deg) {
   if (!std::isfinite(fov_deg)) return;
-  fov_deg_ = std::clamp(fov_deg, kMinFov_deg, kMaxFov_deg);
+  fov_deg_ =
+      explore::is_orthographic(fov_deg) ? kOrthographicFov_deg : std::clamp(fov_deg, kMinFov_deg, kMaxFov_deg);
+  if (!explore::is_orthographic(fov_deg_)) perspective_fov_deg_ = fov_deg_;
   if (FlightPlayer* flight = follows_ ? player() : nullptr; flight != nullptr) flight->keep_fov();
   follow_fov();
 }
@@ -147,6 +149,43 @@ void Session::set_fov(double fov_deg) {
 void Session::follow_fov() {
   FlightPlayer* flight = follows_ ? player() : nullptr;
   screen_.fov_deg = flight != nullptr ? flight->view().fov_deg.value_or(fov_deg_) : fov_deg_;
+  ground_.highest_radii = highest_radii(screen_.fov_deg);
+}
+
+void Session::use_ground() {
+  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  ground_.highest_radii = highest_radii(screen_.fov_deg);
+}
+
+void Session::zoom(double factor) {
+  if (!(factor > 0) || !std::isfinite(factor)) return;
+  if (follows_ || !is_orthographic()) return set_fov(std::max(kMinFov_deg, screen_.fov_deg * factor));
+  stop();
+  const mars::Pose from = seen();
+  pose_ = platform_of(zoomed(from, screen_, {screen_.width / 2.0, screen_.height / 2.0}, factor, ground_));
+}
+
+std::string Session::set_orthographic(bool on) {
+  if (on == is_orthographic()) return {};
+  if (on) {
+    leave_flight();
+    if (mode() != MotionMode::kOrbit) set_mode(MotionMode::kOrbit);
+  }
+  stop();
+  const double fov_deg = on ? kOrthographicFov_deg : perspective_fov_deg_;
+  const std::optional<mars::Pose> pose = at_same_size(seen(), screen_, fov_deg, ground_);
+  if (!pose) return "the middle of the view shows sky; look at the ground first";
+  set_fov(fov_deg);
+  pose_ = kept_clear(platform_of(*pose), ground_);
+  return {};
+}
+
+// Turns about the ground in the middle: a camera that turned in place would lose it at once.
+void Session::turn_orthographic(const Controls& controls, double dt_s) {
+  const double turn_deg =
+      SteerLimits::kRotation_deg_s * std::min(std::max(dt_s, 0.0), SteerLimits::kLongestStep_s);
+  pose_ = platform_of(
+      tilted(seen(), screen_, controls.yaw_right * turn_deg, -controls.pitch_up * turn_deg, ground_));
 }
 
 std::string Session::follow(bool play) {
@@ -249,6 +288,7 @@ void Session::set_mode(MotionMode mode) {
   leave_flight();
   stop();
   if (mode == mover_.mode()) return;
+  if (is_orthographic() && !set_orthographic(false).empty()) set_fov(perspective_fov_deg_);
   if (mover_.mode() == MotionMode::kDrive) {
     // The view stays, not the vehicle's attitude.
     pose_ = mars::to_pose(mars::to_camera(pose_, drive_look_, ground_.radius_m), ground_.radius_m);
@@ -284,6 +324,16 @@ void Session::go_to(mars::LonLat place) {
   mars::Pose goal = pose_;
   goal.lon_deg = place.lon_deg;
   goal.lat_deg = place.lat_deg;
+  if (is_orthographic()) {
+    const mars::Pose from = seen();
+    const auto shown_m = shown_height_m(from, screen_, ground_);
+    if (!shown_m) return;
+    goal.pitch_deg = -90;
+    goal.roll_deg = 0;
+    goal.alt_m = ground_.height_m(mars::direction(place)) +
+                 *shown_m / (2.0 * std::tan(0.5 * screen_.fov_deg * mars::kRadiansPerDegree));
+    return go(goal);
+  }
   double height = height_m();
   if (height > ground_.radius_m) {
     height = ground_.radius_m / 2;
@@ -349,6 +399,19 @@ void Session::advance(double dt_s, const Controls& controls, const mars::HeadAng
     drive_look_ = added(drive_look_, {controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
                                       controls.pitch_up * SteerLimits::kRotation_deg_s * dt, 0});
     look_ = added(drive_look_, tracker);
+  }
+  if (is_orthographic() && mode() == MotionMode::kOrbit) {
+    if (controls.yaw_right != 0 || controls.pitch_up != 0) turn_orthographic(controls, dt_s);
+    Controls moved = controls;
+    moved.yaw_right = moved.pitch_up = 0;
+    // Across the line of sight the motion is that of a camera which is as far away as it seems; what is below the camera moves
+    // less than the camera does.
+    const double share = SteerLimits::kHighest_radii / ground_.highest_radii *
+                         std::max(1.0, 1.0 + pose_.alt_m / ground_.radius_m);
+    moved.right *= share;
+    moved.up *= share;
+    pose_ = mover_.advance(pose_, moved, dt_s, ground_);
+    return;
   }
   pose_ = mover_.advance(pose_, controls, dt_s, ground_);
 }

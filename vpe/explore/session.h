@@ -22,6 +22,7 @@
 #include "vpe/explore/input/mouse_choices.h"
 #include "vpe/explore/mouse.h"
 #include "vpe/explore/mover.h"
+#include "vpe/explore/orthographic.h"
 #include "vpe/explore/terrain_query.h"
 #include "vpe/explore/wheel_zoom.h"
 
@@ -91,8 +92,17 @@ class Session {
   std::uint64_t changes() const { return changes_; }
 
   void resize(int width, int height);
-  // Sets the field of view. In a flight that is followed it holds instead of the flight's, until the flight is left.
+  // Sets the field of view, within kMinFov_deg to kMaxFov_deg or that of the orthographic camera. In a flight that is followed it holds instead of the flight's, until the flight is left.
   void set_fov(double fov_deg);
+  // Multiplies the field of view; with the orthographic camera the distance, and so what is seen, by the same factor.
+  void zoom(double factor);
+
+  // Returns whether the camera is the orthographic one (vpe/explore/orthographic.h).
+  bool is_orthographic() const { return explore::is_orthographic(screen_.fov_deg); }
+  // Takes the orthographic camera, or the former field of view again; the ground in the middle keeps its place and size. It
+  // leaves a flight, and the modes fly, walk and drive. Motion by keys then turns about the middle, and moves by what is seen.
+  // Returns what is wrong (the middle shows sky), or "".
+  std::string set_orthographic(bool on);
 
   // Moves the camera to a pose at once and ends an automatic flight. In walk and drive, here and in go(), a pose is
   // put on the ground, but one more than kLeavesGround_m above it changes the mode to orbit.
@@ -183,13 +193,16 @@ class Session {
   void move_platform(FlightPlayer& flight, const Controls& controls, double dt_s);
   void follow_settings();
   void follow_fov();
+  void use_ground();
+  void turn_orthographic(const Controls& controls, double dt_s);
 
   std::shared_ptr<const paging::Surface> surface_;
   core::Settings settings_;        // the user's own
   core::Settings shown_settings_;  // with a flight's
   FlightController flights_;
   bool follows_ = false;
-  double fov_deg_ = 50;  // the user's own; that of screen_ may be a flight's
+  double fov_deg_ = 50;              // the user's own; that of screen_ may be a flight's
+  double perspective_fov_deg_ = 50;  // before the orthographic camera
   mars::HeadAngles tracker_;
   TerrainQuery ground_;
   Screen screen_;

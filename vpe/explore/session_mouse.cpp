@@ -104,7 +104,7 @@ void Session::look_around(double yaw_deg, double pitch_deg) {
   pose_ = platform_of(rotated(seen(), yaw_deg, pitch_deg, 0.0));
 }
 
-void Session::zoom_view(double notches) { set_fov(screen_.fov_deg * std::pow(kFovNotch, notches)); }
+void Session::zoom_view(double notches) { zoom(std::pow(kFovNotch, notches)); }
 
 void Session::wheel(glm::dvec2 xy, double notches) {
   const double n = signed_notches(notches);
@@ -127,7 +127,7 @@ mars::Pose Session::wheeled(const mars::Pose& from, glm::dvec2 xy, double factor
   mars::Pose to = zoomed(before, screen_, xy, factor, ground_);
   const bool is_ahead = look_.yaw_deg == 0 && look_.pitch_deg == 0 && look_.roll_deg == 0;
   const bool arrives = from.pitch_deg < kStraightDown_deg || arrival_pitch_deg_ == from.pitch_deg;
-  if (mouse_.tilt_on_arrival && is_ahead && arrives && from.roll_deg == 0) {
+  if (mouse_.tilt_on_arrival && !is_orthographic() && is_ahead && arrives && from.roll_deg == 0) {
     if (const auto held = ground_at(before, screen_, xy, ground_)) {
       const auto distance_m = [&](const mars::Pose& pose) {
         return glm::length(mars::to_camera(pose, ground_.radius_m).position_m - *held);

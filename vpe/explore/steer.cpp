@@ -71,7 +71,7 @@ Pose kept_clear(const Pose& pose, const TerrainQuery& ground, double clearance_m
   clear.pitch_deg = std::clamp(pose.pitch_deg, -90.0, 90.0);
   clear.yaw_deg = normalized(pose.yaw_deg);
   clear.roll_deg = normalized(pose.roll_deg);
-  const double highest_m = SteerLimits::kHighest_radii * ground.radius_m;
+  const double highest_m = ground.highest_radii * ground.radius_m;
   clear.alt_m =
       std::clamp(pose.alt_m, std::min(ground_height_m(pose, ground) + clearance_m, highest_m), highest_m);
   return clear;

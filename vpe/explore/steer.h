@@ -14,7 +14,7 @@ namespace vpe::explore {
 
 struct SteerLimits {
   static constexpr double kClearance_m = 1.0;    // least height of the camera above the ground below it
-  static constexpr double kHighest_radii = 10;   // above the sphere
+  static constexpr double kHighest_radii = 10;   // above the sphere; of TerrainQuery, unless it has another
   static constexpr double kSpeed_per_s = 0.7;    // of the height above ground, at full deflection
   static constexpr double kSlowest_m_s = 3.0;    // full deflection near the ground
   static constexpr double kRotation_deg_s = 45;  // of yaw and pitch, at full deflection

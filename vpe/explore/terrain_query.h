@@ -16,6 +16,7 @@ namespace vpe::explore {
 // if the objects that they refer to allow it.
 struct TerrainQuery {
   double radius_m = mars::kMarsRadius_m;
+  double highest_radii = 10;  // highest altitude of a camera above the sphere; SteerLimits::kHighest_radii
   // Returns the height above the sphere at a direction (of any length but 0), metres.
   std::function<double(const glm::dvec3& direction)> height_m;
   // Returns the distance from a camera (relative to the planet's centre) along a unit direction to the ground,

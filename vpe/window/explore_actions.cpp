@@ -197,9 +197,18 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kSetBookmark:
       places_.reload();
       return reply(set_bookmark(session_, setup_.bookmarks, action.number));
-    case Kind::kZoomIn: session_.set_fov(session_.screen().fov_deg / kZoomStep); return {};
-    case Kind::kZoomOut: session_.set_fov(session_.screen().fov_deg * kZoomStep); return {};
-    case Kind::kZoomReset: session_.set_fov(first_fov_deg_); return {};
+    case Kind::kZoomIn: session_.zoom(1 / kZoomStep); return {};
+    case Kind::kZoomOut: session_.zoom(kZoomStep); return {};
+    case Kind::kZoomReset:
+      if (const std::string problem = session_.set_orthographic(false); !problem.empty()) return problem;
+      session_.set_fov(first_fov_deg_);
+      return {};
+    case Kind::kOrthographic: {
+      const bool on = !session_.is_orthographic();
+      if (std::string problem = session_.set_orthographic(on); !problem.empty()) return problem;
+      show_message(on ? "orthographic camera; O: perspective" : "perspective camera");
+      return {};
+    }
     case Kind::kNextMode:
     case Kind::kPreviousMode: {
       const explore::MotionMode mode = action.kind == Kind::kNextMode ? explore::next_mode(session_.mode())
@@ -223,7 +232,7 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kPlaceWaypoint:
       return session_.flights().append(session_.pose(), flight_.ground_speed_m_s(session_));
     case Kind::kLeave:
-      if (std::exchange(state_.help, false) || std::exchange(state_.preferences, false) ||
+      if (menu_.close() || std::exchange(state_.help, false) || std::exchange(state_.preferences, false) ||
           std::exchange(state_.files, false))
         return {};
       if (guide_.inside() != nullptr) {

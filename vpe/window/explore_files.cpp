@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mars/vector/vector_file.h"
 #include "relief/files/relief_file.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -89,6 +90,7 @@ void ExploreWindow::open_file(const std::string& name) {
     files_.add_recent(whole.string());
     return start_job(shown_panorama(whole));
   }
+  if (mars::has_vector_extension(whole.string())) return layers_.add(whole.string(), session_);
   open_planet(whole, {});
 }
 
@@ -126,24 +128,33 @@ void ExploreWindow::open_project_file(const fs::path& file) {
   }
 }
 
-void ExploreWindow::make(const MakeRequest& request) {
-  // They are made by commands, which read the file.
+// Returns why the session cannot be made into a file, or "": commands make it, which read files.
+std::string ExploreWindow::why_not_made(bool is_film) {
   if (objects_.editor().is_changed())
-    return show_message("save the scene first (panel Objects): images and films are made of its file", true);
-  if (reliefs_.reliefs() && request.kind != MadeKind::kFilm)
-    return show_message(
-        "images are made of the planet's file: put the reliefs into a planet first (panel Ground); F12 saves the "
-        "image of the window",
-        true);
+    return "save the scene first (panel Objects): images and films are made of its file";
+  if (reliefs_.reliefs() && !is_film)
+    return "images are made of the planet's file: put the reliefs into a planet first (panel Ground); F12 saves the "
+           "image of the window";
+  return {};
+}
+
+explore::MakeOptions ExploreWindow::make_options() const {
   explore::MakeOptions options;
   options.planet = setup_.planet_file.string();
-  options.width_px = request.size.width_px;
-  options.height_px = request.size.height_px;
-  options.has_overlays = request.has_overlays;
   options.backend = core::named_backend(state_.drawn_by);
   options.stereo = state_.stereo;
   options.eye_base_m = state_.eye_base_m;
   options.convergence_m = state_.convergence_m;
+  return options;
+}
+
+void ExploreWindow::make(const MakeRequest& request) {
+  if (const std::string why = why_not_made(request.kind == MadeKind::kFilm); !why.empty())
+    return show_message(why, true);
+  explore::MakeOptions options = make_options();
+  options.width_px = request.size.width_px;
+  options.height_px = request.size.height_px;
+  options.has_overlays = request.has_overlays;
   switch (request.kind) {
     case MadeKind::kImage: {
       const fs::path file = new_file(setup_.folder, "image-", ".png");

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "mars/vector/vector_file.h"
 #include "vpe/window/explore_window.h"
 
 namespace vpe::window {
@@ -31,7 +32,11 @@ void ExploreWindow::handle(const Event& event) {
   const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
                       event.kind == Event::Kind::kKeyRelease;
   if (event.kind == Event::Kind::kDrop) {
-    if (!event.files.empty()) open_file(event.files.front());
+    // Of several files those of vectors become layers together; else the first one counts.
+    for (const std::string& file : event.files) {
+      open_file(file);
+      if (!mars::has_vector_extension(file)) break;
+    }
     return;
   }
   if (guide_.inside() != nullptr && !is_key) {
@@ -39,6 +44,7 @@ void ExploreWindow::handle(const Event& event) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
+  watch_menu_click(event);
   if (handle_panel_keys(event) || handle_swipe(event) || handle_marks(event)) return;
   switch (event.kind) {
     case Event::Kind::kKeyPress:

@@ -18,7 +18,7 @@ namespace vpe::window {
 
 namespace {
 
-constexpr float kTabLetters = 0.81F;  // of the size of others, so that nine tabs fit
+constexpr float kTabLetters = 0.72F;  // of the size of others, so that ten tabs fit
 
 // A slider that moved under the hand that holds it could not be held: the scale follows at the end.
 void draw_letters(double scale, WindowState& state, Widgets& widgets) {
@@ -47,7 +47,17 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
   changed |= widgets.number("Roll", pose.roll_deg, -180, 180, 5, "%.3f", "degrees, right wing down");
   if (changed) session.put(pose);
   double fov = session.screen().fov_deg;
+  bool orthographic = session.is_orthographic();
+  ImGui::BeginDisabled(orthographic);
   if (widgets.slide("Field of view", fov, 5, 120, "%.1f°", true)) session.set_fov(fov);
+  ImGui::EndDisabled();
+  if (widgets.toggle("Orthographic", orthographic,
+                     "O: parallel lines of sight, so that the view has one scale")) {
+    if (const std::string problem = session.set_orthographic(orthographic); !problem.empty()) {
+      state.message = problem;
+      state.message_is_error = true;
+    }
+  }
   widgets.slide("Speed", state.speed, WindowState::kSlowest, WindowState::kFastest, "%.2f x", true,
                 "factor on the speed of keys and sticks, which also grows with the height");
   ImGui::PopItemWidth();
@@ -121,6 +131,7 @@ void ExploreWindow::draw_frame() {
     draw_status();
   }
   draw_notes();
+  draw_menu();
   if (state_.files) draw_files();
   if (state_.preferences) draw_preferences();
   if (state_.help) draw_explore_help(view_area_, state_.help, widgets_);
@@ -216,6 +227,7 @@ void ExploreWindow::draw_tabs() {
     begin_part("measure");
     const MeasureActions actions = measure_.draw(session_, under_cursor_, widgets_);
     if (actions.go_to) session_.go_to(*actions.go_to);
+    if (actions.undoes || actions.redoes) drawing_.undo(actions.redoes);
     if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
     ImGui::EndChild();
     ImGui::EndTabItem();
@@ -232,6 +244,10 @@ void ExploreWindow::draw_tabs() {
     reliefs_.draw(session_, widgets_);
     ImGui::EndTabItem();
   }
+  if (tab("Layers")) {
+    draw_layers();
+    ImGui::EndTabItem();
+  }
   if (tab("Look")) {
     if (const std::string error =
             appearance_.draw(session_, drawn(), setup_.planet->meta().finest_image_level >= 0, widgets_);
@@ -245,6 +261,22 @@ void ExploreWindow::draw_tabs() {
     ImGui::EndTabItem();
   }
   ImGui::EndTabBar();
+}
+
+void ExploreWindow::draw_layers() {
+  std::vector<std::string> names;
+  for (const paging::ImageLayer& layer : setup_.planet->meta().image_layers) names.push_back(layer.name);
+  layers_.draw(session_, names, widgets_);
+}
+
+void ExploreWindow::update_layers() {
+  if (layers_.update(session_)) frames_due_ = kFramesAfterChange;
+  for (MapPanel* map : {&map_, large_map_.get()}) {
+    if (map != nullptr && map->layers_revision() != layers_.revision())
+      map->set_layers(layers_.map_layers(), layers_.revision());
+  }
+  const LayersActions actions = layers_.take_actions();
+  if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
 }
 
 void ExploreWindow::draw_devices() {
@@ -289,12 +321,13 @@ void ExploreWindow::draw_map(MapPanel& map, int width, int height) {
   const MapActions actions =
       map.draw(session_, state_.map_style, measure_.points(), guide_.hotspots(), width, height, widgets_);
   if (actions.under_cursor) under_cursor_ = actions.under_cursor;
+  if (actions.menu_at) open_menu(*actions.menu_at);
   if (guide_.inside() != nullptr) {
     if (actions.go_to || actions.new_waypoint || actions.new_region || actions.drag)
       show_message("press Esc to leave the panorama first", true);
     return;
   }
-  if (actions.go_to) session_.go_to(*actions.go_to);
+  if (actions.go_to && !layers_.pick_on_map(map.map(), *actions.go_to)) session_.go_to(*actions.go_to);
   if (actions.aim_at) {
     mars::Pose pose = session_.pose();
     pose.yaw_deg = mars::initial_bearing_deg({pose.lon_deg, pose.lat_deg}, *actions.aim_at);

@@ -40,6 +40,7 @@ fs::path whole_path(const fs::path& file) {
 // Takes over the project that the window was opened with. Returns what is wrong, or "".
 std::string ExploreWindow::open_project() {
   drawing_.join(project_bookmarks_);
+  drawing_.join(measure_.path());
   drawing_.join(objects_.editor());
   drawing_.join(reliefs_.editor());
   map_.set_overlay(&drawing_);
@@ -80,6 +81,8 @@ bool ExploreWindow::handle_marks(const Event& event) {
                        (!draws && reliefs_.handle(event, xy, is_typing, session_, view)) ||
                        drawing_.handle(event, xy, is_typing, session_, view) ||
                        (!draws && flight_.handle(event, xy, session_, view));
+  if (!is_mine && !draws && !objects_.is_placing() && !reliefs_.is_placing())
+    layers_.handle(event, xy, session_, view);
   if (is_mine && event.kind == Event::Kind::kRelease) session_.release();
   return is_mine;
 }

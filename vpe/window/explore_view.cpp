@@ -51,7 +51,8 @@ std::string ExploreWindow::image_state(const explore::DrawChoice& chosen) {
   if (reliefs_.reliefs()) ground += "\n" + std::to_string(reliefs_.editor().revision());
   return std::string(core::to_string(chosen.drawn_by)) +
          (chosen.stereo ? core::to_string(*chosen.stereo) : "") + base::format_number(chosen.eye_base_m) + " " +
-         base::format_number(chosen.convergence_m) + objects + ground + (swipes() ? " swipe" : "");
+         base::format_number(chosen.convergence_m) + objects + ground + (swipes() ? " swipe" : "") + " " +
+         std::to_string(layers_.revision());
 }
 
 // Returns a request for an image of the session, by the backend that was chosen last.
@@ -72,6 +73,8 @@ ImageRequest ExploreWindow::request_of(const core::View& view, const explore::Dr
     request.ground = flight->ground();
   }
   request.reliefs = reliefs_.reliefs();
+  request.layers = layers_.files();
+  request.draw.settings.layers = layers_.readable_setting();
   return request;
 }
 
@@ -348,6 +351,7 @@ void ExploreWindow::draw_marks(ImDrawList& list, const EyeImage& eye) {
   drawing_.draw_marks(list, session_, under_cursor_, eye);
   objects_.draw_marks(list, session_, eye);
   reliefs_.draw_marks(list, session_, eye);
+  layers_.draw_marks(list, session_, eye);
   guide_.draw_marks(list, session_, eye);
   if (session_.mouse_use() == explore::MouseUse::kTilt && session_.held_m())
     draw_pivot_mark(list, *session_.held_m(), eye);

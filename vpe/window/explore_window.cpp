@@ -43,6 +43,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       welcome_(search_.places()),
       objects_(setup_.model_ball, setup_.folder, setup_.state, [] { Display::wake(); }),
       reliefs_(setup_.surface, setup_.folder, setup_.state),
+      layers_(setup_.planet->radius_m(), [] { Display::wake(); }),
       measured_(setup_.surface),
       drawing_(session_.flights(), setup_.surface, setup_.folder, [] { Display::wake(); }),
       project_file_(setup_.project_file),
@@ -111,8 +112,8 @@ void ExploreWindow::run() {
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
   return maker_->is_idle() && (screens_ == nullptr || screens_->is_at_rest()) && maps_rest() &&
-         measure_.is_at_rest() && drawing_.is_at_rest() && objects_.is_at_rest() && !measures_other_ground() &&
-         !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
+         measure_.is_at_rest() && drawing_.is_at_rest() && objects_.is_at_rest() && layers_.is_at_rest() &&
+         !measures_other_ground() && !session_.is_going() && !session_.is_moving() && frames_due_ <= 0 &&
          live_.state() == lod::RefinementState::kWaiting;
 }
 
@@ -202,6 +203,7 @@ bool ExploreWindow::step(double wait_s) {
   const double dt_s = busy ? step_s - last_step_s_ : 0.0;
   last_step_s_ = step_s;
   take_planets();
+  update_layers();
   if (shows_progress() && now_s() - jobs_asked_s_ >= kAskJobs_s) update_jobs();
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();

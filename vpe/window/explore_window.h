@@ -14,20 +14,24 @@
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/drawn_by.h"
+#include "vpe/explore/command_words.h"
 #include "vpe/explore/draw_choice.h"
 #include "vpe/explore/drawing/bookmark_list.h"
 #include "vpe/explore/drawing/project.h"
 #include "vpe/explore/files/bookmarks.h"
+#include "vpe/explore/files/flight_backup.h"
 #include "vpe/explore/files/preferences.h"
 #include "vpe/explore/files/unsaved_copy.h"
 #include "vpe/explore/files/view_history.h"
-#include "vpe/explore/flight_backup.h"
 #include "vpe/explore/live_image.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/devices.h"
 #include "vpe/window/explore_layout.h"
 #include "vpe/window/hotspot_guide.h"
 #include "vpe/window/image_layout.h"
+#include "vpe/window/layers/layers_panel.h"
+#include "vpe/window/menu/place_menu.h"
+#include "vpe/window/menu/still_click.h"
 #include "vpe/window/moved_image.h"
 #include "vpe/window/objects/objects_panel.h"
 #include "vpe/window/panels/appearance_panel.h"
@@ -179,6 +183,7 @@ class ExploreWindow {
   DrawingPanel& drawing() { return drawing_; }
   ObjectsPanel& objects() { return objects_; }
   ReliefsPanel& reliefs() { return reliefs_; }
+  LayersPanel& layers() { return layers_; }
   const MeasurePanel& measure() const { return measure_; }
   // Runs one iteration of the event loop: events, devices, panels, an image if one is due. Waits for events for
   // at most `wait_s` seconds if there is nothing to do. Returns false if the window was closed.
@@ -209,6 +214,7 @@ class ExploreWindow {
   void capture(core::RgbImage* to) { capture_ = to; }
   // Returns the panorama that was entered, or null.
   const OverlookView* overlook() const { return guide_.inside(); }
+  const PlaceMenu& menu() const { return menu_; }
   // Returns what the status line says of the place under the cursor.
   const std::string& cursor_line() const { return cursor_text_; }
   // Returns true while keys act in the panels.
@@ -270,6 +276,8 @@ class ExploreWindow {
   void draw_tabs();
   void draw_side_handle();
   void draw_devices();
+  void draw_layers();
+  void update_layers();
   void draw_over_view();
   void draw_notes();
   void draw_bars(const ViewArea& area);
@@ -295,6 +303,11 @@ class ExploreWindow {
   explore::MotionMode key_mode() const;
   void take_planets();
   void replace_planet(ShownPlanet next);
+  // explore_menu.cpp:
+  void watch_menu_click(const Event& event);
+  void open_menu(mars::LonLat place);
+  void draw_menu();
+  void choose(PlaceChoice choice, mars::LonLat place);
   // explore_ground.cpp:
   void follow_ground(const std::shared_ptr<const paging::PlanetFile>& changed);
   void measure_on_ground();
@@ -320,6 +333,8 @@ class ExploreWindow {
   void open_flight(const std::filesystem::path& file);
   void open_project_file(const std::filesystem::path& file);
   void make(const MakeRequest& request);
+  std::string why_not_made(bool is_film);
+  explore::MakeOptions make_options() const;
   void open_planet(const std::filesystem::path& file, const std::filesystem::path& project);
   void start_job(JobList::Order order);
   void finish_job(const JobList::Entry& entry);
@@ -348,6 +363,9 @@ class ExploreWindow {
   MapPanel map_;
   std::unique_ptr<MapPanel> large_map_;  // once it was shown
   MeasurePanel measure_;
+  PlaceMenu menu_;
+  StillClick menu_click_;                   // of the right button in the view
+  std::optional<mars::LonLat> menu_place_;  // under the cursor when it was pressed
   FlightPanel flight_;
   AppearancePanel appearance_;
   PlacesPanel places_;
@@ -360,6 +378,7 @@ class ExploreWindow {
   Welcome welcome_;
   ObjectsPanel objects_;
   ReliefsPanel reliefs_;
+  LayersPanel layers_;
   std::shared_ptr<const paging::Surface> measured_;  // that measurements are of
   double ground_changed_s_ = 0;                      // when images showed other ground last
   DrawingPanel drawing_;

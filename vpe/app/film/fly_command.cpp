@@ -23,6 +23,7 @@
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/carried_drawer.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/layer_check.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
@@ -389,6 +390,8 @@ void fly(FlyArguments& arguments, const Common& common) {
   const auto planet = open_planet(arguments.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
+  require_layers(base.values(), *planet);
+  require_layers(flight, *planet);
   const auto terrain = [surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
                            mars::LonLat place, double exaggeration) {
     return surface->at(mars::direction(place), exaggeration).height_m;

@@ -1,43 +1,18 @@
 #include "vpe/app/picture/frame_overlays.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "mars/vector/feature_reader.h"
 #include "paging/planet/planet_look.h"
 #include "paging/surface/place_cursor.h"
 #include "paging/surface/query.h"
 #include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/core/appearance/layer_list.h"
-#include "vpe/overlay/ground_features.h"
 
 namespace vpe::app {
-namespace {
-
-// Returns the style of the features of a layer whose file says nothing: colours that differ for all kinds of sight (Okabe and
-// Ito 2008).
-mars::FeatureStyle default_style(std::size_t number) {
-  constexpr std::array<base::Rgb, 7> kColours{{{230, 159, 0},
-                                               {86, 180, 233},
-                                               {0, 158, 115},
-                                               {240, 228, 66},
-                                               {0, 114, 178},
-                                               {213, 94, 0},
-                                               {204, 121, 167}}};
-  const mars::StyleColour colour{kColours[number % kColours.size()], 1};
-  mars::FeatureStyle style;
-  style.stroke = colour;
-  style.marker = colour;
-  style.label_colour = {{255, 255, 255}, 1};
-  return style;
-}
-
-}  // namespace
-
 FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
     : planet_(std::move(planet)),
       surface_(planet_, std::size_t{16} << 20),
@@ -54,17 +29,7 @@ void FrameOverlays::change_planet(std::shared_ptr<const paging::PlanetFile> plan
 void FrameOverlays::load(const core::Overlays& overlays) {
   for (const core::LayerFile& file : core::parse_layer_list(overlays.layers)) {
     if (layers_.contains(file.path)) continue;
-    const auto first = static_cast<std::size_t>(layers_.size());
-    auto& kept = layers_[file.path];
-    try {
-      for (mars::FeatureLayer& layer : mars::read_features(file.path, {}, planet_->radius_m())) {
-        kept.push_back(std::make_shared<const overlay::GroundFeatures>(std::move(layer),
-                                                                       default_style(first + kept.size())));
-      }
-    } catch (...) {
-      layers_.erase(file.path);
-      throw;
-    }
+    layers_.emplace(file.path, overlay::read_layer_file(file.path, planet_->radius_m(), layers_.size()));
   }
   if (overlays.names.empty() || names_.contains(overlays.names)) return;
   Names names;

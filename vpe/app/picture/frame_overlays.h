@@ -6,10 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "paging/surface/surface.h"
 #include "vpe/core/frame.h"
+#include "vpe/overlay/layer_files.h"
 #include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
@@ -42,6 +44,9 @@ class FrameOverlays {
   // mars::read_features() throw.
   void load(const core::Overlays& overlays);
 
+  // Draws these vector files from now on as they were read elsewhere, and forgets all others.
+  void use_layers(overlay::LayersByFile files) { layers_ = std::move(files); }
+
   // Draws the overlay layer of a frame that was drawn for the request, with its range image when
   // overlay::needs_range(). Returns an empty layer when no overlay is set. Throws what overlay::draw() and
   // paging::Surface throw.
@@ -58,8 +63,8 @@ class FrameOverlays {
   std::shared_ptr<const paging::PlanetFile> planet_;
   paging::Surface surface_;
   bool has_imagery_;
-  std::map<std::string, Names> names_;                                                         // by file
-  std::map<std::string, std::vector<std::shared_ptr<const overlay::GroundFeatures>>> layers_;  // by file
+  std::map<std::string, Names> names_;  // by file
+  overlay::LayersByFile layers_;
 };
 
 }  // namespace vpe::app

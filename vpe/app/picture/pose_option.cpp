@@ -5,7 +5,7 @@
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
-#include "vpe/app/planet/named_places.h"
+#include "vpe/app/places/named_places.h"
 #include "vpe/base/number.h"
 #include "vpe/core/view.h"
 
@@ -15,11 +15,12 @@ ParsedPose parse_pose(const std::string& option, const std::string& text, std::o
   const auto refuse = [&](const std::string& why) -> UsageError {
     return UsageError(option + " '" + text + "': " + why);
   };
-  if (looks_like_name(text)) {
+  if (is_name(text)) {
     const core::Place place = place_named(option, text);
-    if (height_m) return {{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, height_m, {}, true};
+    if (height_m) return {{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, height_m, {}, place.name};
     const SightOfPlace sight = sight_of(place, mars::kMarsRadius_m);
-    return {{sight.lon_deg, sight.lat_deg, 0, sight.yaw_deg, sight.pitch_deg, 0}, sight.height_m, {}, true};
+    return {
+        {sight.lon_deg, sight.lat_deg, 0, sight.yaw_deg, sight.pitch_deg, 0}, sight.height_m, {}, place.name};
   }
   const auto n = parse_numbers(text);
   if (!n || n->size() < (height_m ? 2 : 3) || n->size() > 6)
@@ -31,8 +32,7 @@ ParsedPose parse_pose(const std::string& option, const std::string& text, std::o
         "LON,LAT,ALT,YAW,PITCH,ROLL");
   const std::size_t yaw = height_m && n->size() == 5 ? 2 : 3;  // index
   const auto number = [&](std::size_t k) { return k < n->size() ? (*n)[k] : 0.0; };
-  ParsedPose parsed{
-      {number(0), number(1), 0, number(yaw), number(yaw + 1), number(yaw + 2)}, height_m, {}, false};
+  ParsedPose parsed{{number(0), number(1), 0, number(yaw), number(yaw + 1), number(yaw + 2)}, height_m, {}, {}};
   if (yaw == 2) {
     const auto text_of = [&](std::size_t k) { return base::format_number(number(k)); };
     parsed.note = option + " '" + text + "' with --height is read as yaw " + text_of(2) + ", pitch " +
@@ -51,9 +51,7 @@ ParsedPose parse_pose(const std::string& option, const std::string& text, std::o
 
 mars::Pose resolve(const ParsedPose& parsed, const std::shared_ptr<const paging::PlanetFile>& planet,
                    double exaggeration) {
-  if (parsed.is_of_name && std::abs(planet->radius_m() / mars::kMarsRadius_m - 1) > 0.01)
-    throw UsageError("names of places are those of Mars, and this planet has a radius of " +
-                     base::format_number(planet->radius_m()) + " m; give LON,LAT,ALT,YAW,PITCH,ROLL");
+  if (!parsed.name.empty()) require_mars_for_name("pose", parsed.name, planet->meta());
   mars::Pose pose = parsed.pose;
   if (!parsed.height_m) {
     if (!(planet->radius_m() + pose.alt_m > 0))

@@ -16,7 +16,7 @@ struct ParsedPose {
   mars::Pose pose;                 // alt_m has no meaning when height_m is set
   std::optional<double> height_m;  // above the terrain as drawn, in place of pose.alt_m
   std::string note;                // how a text was read that can be taken for another form; else empty
-  bool is_of_name = false;         // the pose is on Mars, where the name is
+  std::string name;                // of the place of Mars that was given in place of numbers; else empty
 };
 
 // Parses "LON,LAT,ALT[,YAW[,PITCH[,ROLL]]]": degrees, ALT in metres above the sphere. With height_m the text is

@@ -22,6 +22,7 @@
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/layer_check.h"
 #include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
@@ -276,13 +277,14 @@ void render(RenderArguments& arguments, const Common& common) {
   FrameOverlays overlays(planet);
   overlays.load(parsed.settings.values());
   require_earlier(parsed.settings.values(), *planet);
+  require_layers(parsed.settings.values(), *planet);
   note_illustration(planet->meta(), common.quiet);
   require_known_sun(parsed.settings.values(), planet->meta().body);
   const auto convert = [&](mars::Pose& pose, bool quiet) {
     pose.lat_deg =
         planetocentric({pose.lon_deg, pose.lat_deg}, arguments.latitude, planet->meta(), quiet).lat_deg;
   };
-  if (!parsed.pose.is_of_name) convert(parsed.pose.pose, common.quiet);
+  if (parsed.pose.name.empty()) convert(parsed.pose.pose, common.quiet);
   if (parsed.cull_pose) convert(*parsed.cull_pose, true);
   make_interest_planetocentric(arguments.image.interest, arguments.latitude, planet->meta());
   parsed.request.interest = parse_interest(arguments.image);

@@ -104,7 +104,7 @@ ParsedRender parse_view(const RenderArguments& arguments) {
   parsed.pose = parse_pose("--pose", *arguments.pose, arguments.height_m);
   if (arguments.cull_from) {
     const ParsedPose cull = parse_pose("--cull-from", *arguments.cull_from);
-    if (cull.is_of_name)
+    if (!cull.name.empty())
       throw UsageError("--cull-from '" + *arguments.cull_from + "': give numbers, and not a name");
     parsed.cull_pose = cull.pose;
   }

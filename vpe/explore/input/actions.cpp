@@ -24,6 +24,7 @@ constexpr std::array kActions{
     ActionInfo{K::kZoomIn, "zoom-in", "narrower field of view", false, true},
     ActionInfo{K::kZoomOut, "zoom-out", "wider field of view", false, true},
     ActionInfo{K::kZoomReset, "zoom-reset", "reset the field of view"},
+    ActionInfo{K::kOrthographic, "orthographic", "orthographic camera, or perspective"},
     ActionInfo{K::kNextMode, "next-mode", "next mode of motion: orbit, fly, walk"},
     ActionInfo{K::kPreviousMode, "previous-mode", "previous mode of motion"},
     ActionInfo{K::kCatchCursor, "catch-cursor", "fly, walk, drive: look around by moving the mouse"},

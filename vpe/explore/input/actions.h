@@ -21,6 +21,7 @@ enum class ActionKind {
   kZoomIn,
   kZoomOut,
   kZoomReset,
+  kOrthographic,
   kNextMode,
   kPreviousMode,
   kCatchCursor,

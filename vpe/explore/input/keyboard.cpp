@@ -51,6 +51,7 @@ std::vector<PressedBinding> make_pressed() {
       {kTypedPlus, {A::kZoomIn}},
       {{Key::kMinus, kAlone}, {A::kZoomOut}},
       {{Key::k0, kAlone}, {A::kZoomReset}},
+      {{Key::kO, kAlone}, {A::kOrthographic}},
       {{Key::kF, kAlone}, {A::kNextMode}},
       {{Key::kF, kShift}, {A::kPreviousMode}},
       {{Key::kX, kAlone}, {A::kCatchCursor}},

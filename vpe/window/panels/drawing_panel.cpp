@@ -6,6 +6,8 @@
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/explore/measure/read_out.h"
+#include "vpe/explore/results/path_results.h"
+#include "vpe/explore/results/result_files.h"
 #include "vpe/window/panels/file_names.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
@@ -40,6 +42,13 @@ std::string dip_text(const explore::GroundStatistics& statistics) {
 std::string strike_text(const explore::GroundStatistics& statistics) {
   const auto& plane = statistics.plane;
   return plane ? degrees_text(plane->strike_deg, 0, plane->strike_error_deg) : "unknown";
+}
+
+void add_lines(const ValueTable& table, const Drawing& drawing, const MeasuredDrawing& measured,
+               const paging::PlanetMeta& meta) {
+  for (const explore::ReadOutLine& line :
+       explore::drawing_ground_lines({drawing, measured.sphere, *measured.ground, measured.along, meta}))
+    table.add(line.label.c_str(), line.text);
 }
 
 std::string percent(double share) { return std::to_string(static_cast<int>(share * 100)) + " % measured"; }
@@ -170,6 +179,7 @@ void DrawingPanel::draw_selected(const Drawing& drawing, Widgets& widgets) {
   if (widgets.button("Down", "later in the list")) report(drawings_.reorder(drawing.id, position + 1));
   ImGui::EndDisabled();
   draw_measures(drawing);
+  draw_results(drawing, widgets);
   draw_vertices(drawing, widgets);
   ImGui::PopID();
 }
@@ -184,6 +194,7 @@ void DrawingPanel::draw_measures(const Drawing& drawing) {
     table.add("Place", base::format_display(drawing.vertices[0].lon_deg, 6) + ", " +
                            base::format_display(drawing.vertices[0].lat_deg, 6));
     table.add("Elevation", ground([&](const explore::GroundMeasures& g) { return height(g.lowest_m); }));
+    if (m != nullptr && m->ground) add_lines(table, drawing, *m, surface_->planet().meta());
     return;
   }
   const bool is_polygon = drawing.kind == DrawingKind::kPolygon;
@@ -219,11 +230,41 @@ void DrawingPanel::draw_measures(const Drawing& drawing) {
       table.add("Below the rim", statistics([](const explore::GroundStatistics& s) {
                   return s.over_rim ? explore::measured_volume_text(s.over_rim->below_m3) : "unknown";
                 }));
-      if (m != nullptr && m->ground && m->ground->area && m->ground->area->has_nodata)
-        table.add("", "part of it has no data");
     }
   }
+  if (m != nullptr && m->ground) add_lines(table, drawing, *m, surface_->planet().meta());
   if (m != nullptr && !m->error.empty()) table.add("", m->error);
+}
+
+// Draws buttons that save and copy what was measured.
+void DrawingPanel::draw_results(const Drawing& drawing, Widgets& widgets) {
+  const MeasuredDrawing* m = measurer_->measured();
+  const bool is_measured = m != nullptr && m->ground.has_value();
+  ImGui::BeginDisabled(!is_measured);
+  const bool saves = widgets.button("Save measures",
+                                    "beside the file below, its name with -measures: .geojson, .gpkg or .csv");
+  ImGui::SameLine();
+  const bool copies = widgets.button("Copy measures", "as text");
+  ImGui::EndDisabled();
+  if (!is_measured || !(saves || copies)) return;
+  const explore::DrawingResults results{drawing, m->sphere, *m->ground, m->along, surface_->planet().meta()};
+  if (saves) return save_results(results);
+  ImGui::SetClipboardText(explore::drawing_text(results).c_str());
+  tell("the measures are copied");
+}
+
+void DrawingPanel::save_results(const explore::DrawingResults& results) {
+  try {
+    std::filesystem::path path = file("");
+    const std::string extension = path.has_extension() ? path.extension().string() : ".geojson";
+    path.replace_filename(path.stem().string() + "-measures" + extension);
+    const mars::FeatureLayer layer = explore::drawing_layer(results);
+    explore::write_result(path, layer, explore::result_info("measure: a drawing on the ground", results.meta),
+                          explore::csv_of_layer(layer));
+    tell("measures: " + path.string());
+  } catch (const std::exception& e) {
+    report(e.what());
+  }
 }
 
 void DrawingPanel::draw_vertices(const Drawing& drawing, Widgets& widgets) {

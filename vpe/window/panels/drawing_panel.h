@@ -13,6 +13,7 @@
 #include "vpe/explore/drawing/drawing_files.h"
 #include "vpe/explore/drawing/sketch.h"
 #include "vpe/explore/flight_undo.h"
+#include "vpe/explore/results/drawing_results.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/marks/drawing_marks.h"
 #include "vpe/window/panels/map_panel.h"
@@ -71,6 +72,8 @@ class DrawingPanel : public MapOverlay {
   DrawingActions take_actions() { return std::exchange(actions_, {}); }
   // Adds other work to the order of undo; it must outlive the panel.
   void join(explore::UndoStore& store) { history_.join(store); }
+  // Reverts the last edit of all that joined, or repeats it, and says so; takes back a vertex while something is drawn.
+  void undo(bool again);
   // Takes over what flight and drawings did, in the order of calls.
   void update_history() { history_.update(); }
 
@@ -94,12 +97,13 @@ class DrawingPanel : public MapOverlay {
   void place_vertex(mars::LonLat place);
   void report(const std::string& problem);
   void tell(const std::string& text);
-  void undo(bool again);
   DrawingScene scene() const;
   void draw_tools(Widgets& widgets);
   void draw_list(Widgets& widgets);
   void draw_selected(const explore::Drawing& drawing, Widgets& widgets);
   void draw_measures(const explore::Drawing& drawing);
+  void draw_results(const explore::Drawing& drawing, Widgets& widgets);
+  void save_results(const explore::DrawingResults& results);
   void draw_vertices(const explore::Drawing& drawing, Widgets& widgets);
   void draw_files(Widgets& widgets);
   std::filesystem::path file(const char* extension) const;

@@ -18,6 +18,7 @@ constexpr const char* kMouseHelp[][2] = {
     {"X in fly, walk, drive",
      "the mouse looks around without a button, the wheel sets the speed; Esc or X ends it"},
     {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
+    {"right click, also on the map", "what is there; viewshed, panorama, profile, measuring from there"},
     {"double click", "fly there"},
     {"with a tool of Draw",
      "click, or V in the middle of the view: vertex; double click, Enter: end; Backspace: take back; Esc: cancel"},

@@ -37,6 +37,11 @@ void MapPanel::set_planet(std::shared_ptr<const paging::PlanetFile> planet) {
   requested_.reset();
 }
 
+void MapPanel::set_layers(std::vector<explore::MapLayer> layers, std::uint64_t revision) {
+  layers_ = std::make_shared<const std::vector<explore::MapLayer>>(std::move(layers));
+  layers_revision_ = revision;
+}
+
 std::unique_ptr<MapPanel::Worker> MapPanel::make_worker() const {
   return std::make_unique<Worker>(
       [planet = planet_, threads = threads_, painter = std::unique_ptr<explore::MapPainter>(),
@@ -46,7 +51,7 @@ std::unique_ptr<MapPanel::Worker> MapPanel::make_worker() const {
             painter = std::make_unique<explore::MapPainter>(planet, kBudget_bytes);
             pool = std::make_unique<base::ThreadPool>(threads);
           }
-          core::RgbImage image = painter->paint(request.map, request.style, *pool);
+          core::RgbImage image = painter->paint(request.map, request.style, *pool, *request.layers);
           if (image.width > 0) return Made(request, std::move(image));
         } catch (const std::exception&) {
           // Tiles that cannot be read leave the map unchanged; the view reports them.
@@ -75,6 +80,12 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapStyle sty
   if (ImGui::IsItemHovered()) actions.under_cursor = map_.place(xy);
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
     map_ = explore::zoomed(map_, xy, std::pow(1.25, static_cast<double>(io.MouseWheel)));
+  if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) menu_click_.press(xy);
+  menu_click_.move(xy);
+  if (ImGui::IsMouseReleased(ImGuiMouseButton_Right)) {
+    if (const auto clicked = menu_click_.release(); clicked && ImGui::IsItemHovered())
+      actions.menu_at = map_.place(*clicked);
+  }
   if (ImGui::IsItemActivated()) {
     pressed_ = xy;
     dragged_ = xy;
@@ -122,7 +133,7 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapStyle sty
     pressed_.reset();
   }
 
-  const Request request{map_, style};
+  const Request request{map_, style, layers_revision_, layers_};
   if (!(requested_ == request)) {
     requested_ = request;
     worker_->request(request);

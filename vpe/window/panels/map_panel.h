@@ -1,6 +1,7 @@
 // The map panel: a flat map with the camera and its footprint. The user can click, drag and zoom it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "vpe/explore/measure/map_painter.h"
 #include "vpe/explore/measure/map_view.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/menu/still_click.h"
 #include "vpe/window/ui/display.h"
 #include "vpe/window/ui/widgets.h"
 
@@ -33,6 +35,7 @@ struct MapActions {
   };
   std::optional<Drag> drag;
   std::optional<mars::LonLat> new_waypoint;  // by a click with Ctrl
+  std::optional<mars::LonLat> menu_at;       // by a right click
 };
 
 // Lies over the map, and may take clicks and drags on it.
@@ -62,6 +65,10 @@ class MapPanel {
   // Shows another planet file of the same body from now on. Waits for the image that is being painted.
   void set_planet(std::shared_ptr<const paging::PlanetFile> planet);
 
+  // Shows vector layers on the map from now on; `revision` differs whenever they do.
+  void set_layers(std::vector<explore::MapLayer> layers, std::uint64_t revision);
+  std::uint64_t layers_revision() const { return layers_revision_; }
+
   // Draws this over the map too, from now on; it must outlive the panel. May be null.
   void set_overlay(MapOverlay* overlay) { overlay_ = overlay; }
 
@@ -72,6 +79,8 @@ class MapPanel {
   struct Request {
     explore::MapView map;
     explore::MapStyle style = explore::MapStyle::kElevation;
+    std::uint64_t layers_revision = 0;
+    std::shared_ptr<const std::vector<explore::MapLayer>> layers;
     bool operator==(const Request&) const = default;
   };
   using Made = std::pair<Request, core::RgbImage>;
@@ -94,11 +103,15 @@ class MapPanel {
   glm::dvec2 dragged_{0, 0};
   std::optional<std::size_t> waypoint_;  // that is dragged
   bool waypoint_moved_ = false;
+  StillClick menu_click_;  // of the right button
   MapOverlay* overlay_ = nullptr;
   bool overlay_holds_ = false;  // what is dragged
   std::unique_ptr<Texture> texture_;
   explore::MapView shown_;  // of the texture
   std::optional<Request> requested_;
+  std::shared_ptr<const std::vector<explore::MapLayer>> layers_ =
+      std::make_shared<const std::vector<explore::MapLayer>>();
+  std::uint64_t layers_revision_ = 0;
 
   using Worker = base::LatestWorker<Request, Made>;
   std::unique_ptr<Worker> make_worker() const;

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "vpe/window/panels/profile_plot_view.h"
+#include "vpe/explore/results/measure_path.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
@@ -139,7 +139,8 @@ void draw_measure_marks(ImDrawList& list, const explore::Session& session, const
   const Marker marker(list, session, eye);
   marker.clip();
   if (marks.profile != nullptr) marker.line(*marks.profile);
-  for (std::size_t n = 0; n < marks.points.size(); ++n) marker.point(marks.points[n], point_name(n));
+  for (std::size_t n = 0; n < marks.points.size(); ++n)
+    marker.point(marks.points[n], explore::path_point_name(n));
   if (marks.marked) marker.cross(*marks.marked);
   marker.end_clip();
 }

@@ -8,9 +8,10 @@
 
 #include "mars/geodesy/place_text.h"
 #include "paging/planet/planet_meta.h"
-#include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/explore/measure/sight_text.h"
+#include "vpe/explore/results/path_results.h"
+#include "vpe/explore/results/result_files.h"
 #include "vpe/window/panels/file_names.h"
 #include "vpe/window/panels/measure_marks.h"
 #include "vpe/window/panels/profile_plot_view.h"
@@ -43,20 +44,33 @@ void MeasurePanel::set_scene(explore::SightScene scene) {
 }
 
 void MeasurePanel::add(mars::LonLat place) {
-  if (!mars::is_valid(place)) return;
-  places_.push_back({mars::normalize_lon_deg(place.lon_deg), place.lat_deg});
-  request();
+  path_.add(place);
+  update();
+}
+
+void MeasurePanel::begin_at(mars::LonLat place) {
+  path_.begin_at(place);
+  update();
+}
+
+void MeasurePanel::go_on_to(mars::LonLat place, mars::LonLat begin) {
+  path_.go_on_to(place, begin);
+  update();
 }
 
 void MeasurePanel::erase(std::size_t index) {
-  if (index >= places_.size()) return;
-  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(index));
-  request();
+  path_.erase(index);
+  update();
 }
 
 void MeasurePanel::clear() {
-  places_.clear();
-  request();
+  path_.clear();
+  update();
+}
+
+void MeasurePanel::update() {
+  if (path_.revision() != measured_revision_) request();
+  take();
 }
 
 std::optional<mars::LonLat> MeasurePanel::marked() const {
@@ -68,10 +82,14 @@ void MeasurePanel::request() {
   marked_.reset();
   measurer_->forget();
   wanted_ = 0;
-  if (places_.size() >= 2) measure();
+  measured_revision_ = path_.revision();
+  if (points().size() >= 2) measure();
 }
 
-void MeasurePanel::measure() { wanted_ = measurer_->request({places_, from_height_m_, to_height_m_, scene_}); }
+void MeasurePanel::measure() {
+  wanted_ = measurer_->request(
+      {{points().begin(), points().end()}, path_.from_height_m(), path_.to_height_m(), scene_});
+}
 
 void MeasurePanel::take() {
   std::optional<Measured> next = measurer_->take();
@@ -88,17 +106,17 @@ bool MeasurePanel::is_of_scene(const Measured& measured) const {
 
 MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
                                   Widgets& widgets) {
-  take();
+  update();
   MeasureActions actions;
   begin_part("measure");
   if (ImGui::CollapsingHeader("Under the cursor", ImGuiTreeNodeFlags_DefaultOpen))
     draw_read_out(session, under_cursor);
   if (ImGui::CollapsingHeader("Place", ImGuiTreeNodeFlags_DefaultOpen)) draw_place(actions, widgets);
   if (ImGui::CollapsingHeader("Path", ImGuiTreeNodeFlags_DefaultOpen)) {
-    draw_points(widgets);
-    if (places_.size() >= 2) draw_values();
+    draw_points(actions, widgets);
+    if (points().size() >= 2) draw_values();
   }
-  if (places_.size() >= 2) {
+  if (points().size() >= 2) {
     if (ImGui::CollapsingHeader("Line of sight", ImGuiTreeNodeFlags_DefaultOpen)) draw_sight(widgets);
   }
   ImGui::EndChild();
@@ -157,26 +175,30 @@ void MeasurePanel::draw_place(MeasureActions& actions, Widgets& widgets) {
   ImGui::EndDisabled();
 }
 
-void MeasurePanel::draw_points(Widgets& widgets) {
-  if (places_.empty()) {
+void MeasurePanel::draw_points(MeasureActions& actions, Widgets& widgets) {
+  actions.undoes = widgets.button("Undo##measure", "Ctrl+Z: the last edit, of points, drawings and all else");
+  ImGui::SameLine();
+  actions.redoes = widgets.button("Redo##measure", "Ctrl+Shift+Z");
+  if (points().empty()) {
     draw_hint("M adds the point under the cursor. Two points make a path.");
     return;
   }
+  ImGui::SameLine();
+  if (widgets.button("Clear", "remove all points")) clear();
   std::optional<std::size_t> gone;
-  for (std::size_t n = 0; n < places_.size(); ++n) {
-    const std::string name = point_name(n);
+  for (std::size_t n = 0; n < points().size(); ++n) {
+    const std::string name = explore::path_point_name(n);
     if (widgets.button(("x##" + name).c_str(), "remove this point")) gone = n;
     ImGui::SameLine();
-    ImGui::Text("%s   %s", name.c_str(), explore::coordinates_text(places_[n]).c_str());
+    ImGui::Text("%s   %s", name.c_str(), explore::coordinates_text(points()[n]).c_str());
   }
   if (gone) erase(*gone);
-  if (widgets.button("Clear", "remove all points")) clear();
 }
 
 void MeasurePanel::draw_values() {
   const ValueTable table("figures");
   double arc_rad = 0;
-  for (std::size_t n = 1; n < places_.size(); ++n) arc_rad += mars::distance_rad(places_[n - 1], places_[n]);
+  for (std::size_t n = 1; n < points().size(); ++n) arc_rad += mars::distance_rad(points()[n - 1], points()[n]);
   table.add("Great circle", explore::measured_length_text(arc_rad * surface_->planet_radius_m()));
   const explore::Profile* profile = measured_ ? measured_->profile.get() : nullptr;
   const auto of_profile = [&](const std::string& text) {
@@ -187,20 +209,27 @@ void MeasurePanel::draw_values() {
   table.add("Over ground", of_profile(explore::measured_length_text(p.ground_length_m)));
   table.add("Lowest", of_profile(base::format_display(p.lowest_m, 1) + " m"));
   table.add("Highest", of_profile(base::format_display(p.highest_m, 1) + " m"));
-  if (p.has_nodata) table.add("", "part of the path has no data");
+  if (profile == nullptr) return;
+  for (const explore::ReadOutLine& line : explore::ground_lines(measured_->ground, surface_->planet().meta()))
+    table.add(line.label.c_str(), line.text);
 }
 
 void MeasurePanel::draw_sight(Widgets& widgets) {
-  const std::string first = point_name(0);
-  const std::string last = point_name(places_.size() - 1);
+  const std::string first = explore::path_point_name(0);
+  const std::string last = explore::path_point_name(points().size() - 1);
+  double from_height_m = path_.from_height_m();
+  double to_height_m = path_.to_height_m();
   ImGui::PushItemWidth(ImGui::GetFontSize() * 5);
-  bool changed = widgets.number((first + " (m)##from").c_str(), from_height_m_, 0, kMostHeight_m, 0, "%.6g",
+  bool changed = widgets.number((first + " (m)##from").c_str(), from_height_m, 0, kMostHeight_m, 0, "%.6g",
                                 "height above the ground");
   ImGui::SameLine();
-  changed |= widgets.number((last + " (m)##to").c_str(), to_height_m_, 0, kMostHeight_m, 0, "%.6g",
+  changed |= widgets.number((last + " (m)##to").c_str(), to_height_m, 0, kMostHeight_m, 0, "%.6g",
                             "height above the ground");
   ImGui::PopItemWidth();
-  if (changed) request();
+  if (changed) {
+    path_.set_heights(from_height_m, to_height_m);
+    update();
+  }
   if (!measured_) {
     ImGui::TextDisabled("%s", kMeasuring);
     return;
@@ -222,8 +251,8 @@ void MeasurePanel::draw_sight(Widgets& widgets) {
 
 MeasureActions MeasurePanel::draw_profile(Widgets& widgets) {
   MeasureActions actions;
-  if (places_.size() < 2) return actions;
-  take();
+  if (points().size() < 2) return actions;
+  update();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const double line = static_cast<double>(ImGui::GetFrameHeightWithSpacing());
   const double height = std::max(line, static_cast<double>(room.y) - line);
@@ -235,16 +264,20 @@ MeasureActions MeasurePanel::draw_profile(Widgets& widgets) {
     return actions;
   }
   const explore::Profile& profile = *measured_->profile;
-  ProfilePlot plot{profile, surface_->planet_radius_m(), nullptr, from_height_m_, to_height_m_};
-  const bool has_sight = measured_->sight && places_.size() == 2;
+  ProfilePlot plot{profile, surface_->planet_radius_m(), nullptr, path_.from_height_m(), path_.to_height_m()};
+  const bool has_sight = measured_->sight && points().size() == 2;
   if (has_sight) plot.sight = &*measured_->sight;
   const std::optional<double> cursor_m = draw_profile_plot(plot, static_cast<double>(room.x), height, widgets);
   marked_.reset();
   marked_frame_ = ImGui::GetFrameCount();
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
-  widgets.text("##file", file_, "file to write; ~/ is the home folder");
+  widgets.text("##file", file_, "file to write: .csv, .geojson or .gpkg; ~/ is the home folder");
   ImGui::SameLine();
-  if (widgets.button("Save CSV")) save(actions);
+  if (widgets.button("Save##profile",
+                     "the profile as a table (.csv), or path and points as features (.geojson, .gpkg)"))
+    save(actions);
+  ImGui::SameLine();
+  if (widgets.button("Copy##profile", "the figures of path and line of sight as text")) copy(actions);
   ImGui::SameLine();
   if (cursor_m) {
     const paging::ProfilePoint& point = explore::nearest_point(profile, *cursor_m);
@@ -274,7 +307,13 @@ void MeasurePanel::save(MeasureActions& actions) const {
     const std::filesystem::path path = in_home(file_);
     std::error_code ignored;
     const bool existed = std::filesystem::exists(path, ignored);
-    base::write_file(path, explore::to_csv(*measured_->profile));
+    const paging::PlanetMeta& meta = surface_->planet().meta();
+    const explore::Profile& profile = *measured_->profile;
+    explore::write_result(path,
+                          explore::profile_layer(explore::profile_json(profile, measured_->ground, meta),
+                                                 measured_->request.places),
+                          explore::result_info("profile: the ground along great circles", meta),
+                          explore::to_csv(profile));
     const std::filesystem::path whole = std::filesystem::absolute(path, ignored);
     actions.message = (existed ? "profile replaced: " : "profile saved: ") + (ignored ? path : whole).string();
     actions.message_is_error = false;
@@ -283,9 +322,40 @@ void MeasurePanel::save(MeasureActions& actions) const {
   }
 }
 
+std::string MeasurePanel::results_text() const {
+  std::vector<explore::ReadOutLine> lines;
+  for (std::size_t n = 0; n < points().size(); ++n)
+    lines.push_back({explore::path_point_name(n), explore::coordinates_text(points()[n])});
+  const explore::Profile& profile = *measured_->profile;
+  const auto height = [](double height_m) { return base::format_display(height_m, 1) + " m"; };
+  lines.push_back({"Great circle", explore::measured_length_text(profile.length_m)});
+  lines.push_back({"Over ground", explore::measured_length_text(profile.ground_length_m)});
+  lines.push_back({"Lowest", height(profile.lowest_m)});
+  lines.push_back({"Highest", height(profile.highest_m)});
+  if (measured_->sight) {
+    const std::string first = explore::path_point_name(0);
+    const std::string last = explore::path_point_name(points().size() - 1);
+    lines.push_back(
+        {"Line of sight",
+         first + " and " + last + (measured_->sight->visible ? " see each other" : " do not see each other")});
+    const explore::SightEnds ends{first, last, measured_->request.to_height_m,
+                                  !measured_->request.scene.file.empty()};
+    for (explore::ReadOutLine& line : explore::sight_lines(*measured_->sight, ends))
+      lines.push_back(std::move(line));
+  }
+  for (explore::ReadOutLine& line : explore::ground_lines(measured_->ground, surface_->planet().meta()))
+    lines.push_back(std::move(line));
+  return explore::text_of_lines(lines);
+}
+
+void MeasurePanel::copy(MeasureActions& actions) const {
+  ImGui::SetClipboardText(results_text().c_str());
+  actions.message = "the figures are copied";
+}
+
 void MeasurePanel::draw_marks(ImDrawList& list, const explore::Session& session, const EyeImage& eye) {
   take();
-  draw_measure_marks(list, session, {places_, measured_ ? measured_->profile.get() : nullptr, marked()}, eye);
+  draw_measure_marks(list, session, {points(), measured_ ? measured_->profile.get() : nullptr, marked()}, eye);
 }
 
 }  // namespace vpe::window

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vpe/explore/measure/read_out.h"
+#include "vpe/explore/results/measure_path.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/marks/ground_view.h"
 #include "vpe/window/ui/widgets.h"
@@ -19,6 +20,8 @@ namespace vpe::window {
 // Holds what the window has to do after the panel was drawn.
 struct MeasureActions {
   std::optional<mars::LonLat> go_to;
+  bool undoes = false;  // the last edit, whatever it was of
+  bool redoes = false;
   std::string message;  // empty: nothing new
   bool message_is_error = false;
 };
@@ -56,16 +59,22 @@ class MeasurePanel {
 
   // Adds a point to the path. Ignores invalid places.
   void add(mars::LonLat place);
+  // Begins the path anew with one point.
+  void begin_at(mars::LonLat place);
+  // Goes on to a place from the last point, or else from `begin`.
+  void go_on_to(mars::LonLat place, mars::LonLat begin);
   void erase(std::size_t index);
   void clear();
-  std::span<const mars::LonLat> points() const { return places_; }
+  std::span<const mars::LonLat> points() const { return path_.places(); }
+  // Returns the path, a store of an order of undo. What is undone is measured again in update().
+  explore::UndoStore& path() { return path_; }
   // Returns the place under a cursor on the plot of the last frame, to be marked in map and view.
   std::optional<mars::LonLat> marked() const;
 
   // Returns true if nothing is being measured, and no result waits for update().
-  bool is_at_rest() const { return measurer_->is_idle(); }
-  // Takes a finished result. draw() and draw_marks() do this too.
-  void update() { take(); }
+  bool is_at_rest() const { return measurer_->is_idle() && path_.revision() == measured_revision_; }
+  // Measures the path again if it was edited or undone, and takes a finished result. draw() and draw_marks() take it too.
+  void update();
   // Returns the measurement of the present points, or null if it is not finished.
   const Measured* measured() const { return measured_ ? &*measured_ : nullptr; }
 
@@ -79,15 +88,16 @@ class MeasurePanel {
   bool is_of_scene(const Measured& measured) const;
   void draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor);
   void draw_place(MeasureActions& actions, Widgets& widgets);
-  void draw_points(Widgets& widgets);
+  void draw_points(MeasureActions& actions, Widgets& widgets);
   void draw_values();
   void draw_sight(Widgets& widgets);
   void save(MeasureActions& actions) const;
+  void copy(MeasureActions& actions) const;
+  std::string results_text() const;
 
   std::shared_ptr<const paging::Surface> surface_;
-  std::vector<mars::LonLat> places_;
-  double from_height_m_ = 2;
-  double to_height_m_ = 0;
+  explore::MeasurePath path_;
+  std::uint64_t measured_revision_ = path_.revision();  // of the path that was requested last
   std::string place_text_;
   std::optional<mars::LonLat> place_read_;
   std::string place_reply_;  // how the text was understood, or what is wrong with it

@@ -6,6 +6,7 @@
 
 #include "vpe/base/nice_ticks.h"
 #include "vpe/base/number.h"
+#include "vpe/explore/results/measure_path.h"
 #include "vpe/window/ui/imgui_helpers.h"
 
 namespace vpe::window {
@@ -120,7 +121,7 @@ void draw_names(ImDrawList& list, const Frame& f, const explore::Profile& profil
   double free_from = -1e9;
   for (const paging::ProfilePoint& point : profile.points) {
     if (!point.waypoint) continue;
-    const std::string name = point_name(index++);
+    const std::string name = explore::path_point_name(index++);
     const double x = f.x(point.distance_m);
     const double wide = ImGui::CalcTextSize(name.c_str()).x;
     list.AddLine(at(x, f.y0), at(x, f.y1), IM_COL32(255, 214, 90, 70));
@@ -132,13 +133,6 @@ void draw_names(ImDrawList& list, const Frame& f, const explore::Profile& profil
 }
 
 }  // namespace
-
-std::string point_name(std::size_t index) {
-  std::string name;
-  for (++index; index > 0; index = (index - 1) / 26)
-    name.insert(name.begin(), static_cast<char>('A' + static_cast<int>((index - 1) % 26)));
-  return name;
-}
 
 std::optional<double> draw_profile_plot(const ProfilePlot& plot, double width, double height,
                                         Widgets& widgets) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "vpe/explore/measure/profile_plot.h"
 #include "vpe/window/ui/widgets.h"
@@ -21,8 +20,5 @@ struct ProfilePlot {
 // Draws a plot of this size in pixels, with the vertical exaggeration above it. Returns the distance under the
 // cursor, or nullopt beside the ground.
 std::optional<double> draw_profile_plot(const ProfilePlot& plot, double width, double height, Widgets& widgets);
-
-// Returns the name of a path's point: A, B, ... Z, AA, AB.
-std::string point_name(std::size_t index);
 
 }  // namespace vpe::window

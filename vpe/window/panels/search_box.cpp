@@ -36,12 +36,21 @@ void SearchBox::find() {
                                       : "no such name; coordinates are understood too: 137.44 E 4.59 S";
 }
 
-// Up and down move the mark, and leave the text alone.
+bool SearchBox::completes() const {
+  return is_open_ && !found_.empty() && found_[static_cast<std::size_t>(marked_)].place.name != text_;
+}
+
+// Up and down move the mark, and leave the text alone. Tab makes it the marked name.
 int SearchBox::on_edit(ImGuiInputTextCallbackData* data) {
   auto& box = *static_cast<SearchBox*>(data->UserData);
-  if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
   const int count = static_cast<int>(box.found_.size());
   if (count == 0) return 0;
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, box.found_[static_cast<std::size_t>(box.marked_)].place.name.c_str());
+    return 0;
+  }
+  if (data->EventFlag != ImGuiInputTextFlags_CallbackHistory) return 0;
   box.marked_ = (box.marked_ + (data->EventKey == ImGuiKey_UpArrow ? count - 1 : 1)) % count;
   return 0;
 }
@@ -55,10 +64,12 @@ std::optional<core::Place> SearchBox::draw(double width_px, Widgets& widgets) {
   }
   ImGui::SetNextItemWidth(static_cast<float>(width_px));
   std::string typed = text_;
+  // With nothing to complete, Tab goes on to the next widget.
+  const ImGuiInputTextFlags completion = completes() ? ImGuiInputTextFlags_CallbackCompletion : 0;
   const bool entered =
       ImGui::InputTextWithHint("##search", "Search: a name or coordinates  ( / )", &typed,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory |
-                                   ImGuiInputTextFlags_AutoSelectAll,
+                                   ImGuiInputTextFlags_AutoSelectAll | completion,
                                on_edit, this);
   widgets.record("search");
   const bool is_active = ImGui::IsItemActive();
@@ -75,6 +86,10 @@ std::optional<core::Place> SearchBox::draw(double width_px, Widgets& widgets) {
     is_open_ = false;
   }
   if (ImGui::IsItemActivated() && !text_.empty()) is_open_ = true;
+  // ImGui gives Tab to a field at its activation only, and else moves on to the next widget.
+  constexpr ImU64 kTab = ImU64{1} << ImGuiKey_Tab;
+  ImU64& keys = ImGui::GetCurrentContext()->ActiveIdUsingKeyInputMask;
+  if (is_active) keys = completes() ? keys | kTab : keys & ~kTab;
   bool is_over_list = false;
   if (is_open_) {
     if (const auto clicked = draw_list(corner, width_px, widgets)) {

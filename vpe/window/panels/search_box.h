@@ -29,8 +29,9 @@ class SearchBox {
   // Returns true while the list is shown; clicks on it are not those of the view.
   bool is_open() const { return is_open_; }
 
-  // Draws the field in the present ImGui window, and the list over what is below. Returns the place that was
-  // chosen: by Enter the marked one, or by a click. Coordinates have no diameter, and their text as name.
+  // Draws the field in the present ImGui window, and while text is typed the list of what is found over what is below.
+  // Up and Down move its mark, which begins at the first place; Tab makes the marked name the text. Returns the place that
+  // was chosen: by Enter the marked one, or by a click. Coordinates have no diameter, and their text as name.
   std::optional<core::Place> draw(double width_px, Widgets& widgets);
 
  private:
@@ -39,6 +40,7 @@ class SearchBox {
     std::string detail;
   };
   void find();
+  bool completes() const;  // whether Tab has a name to set
   std::optional<core::Place> draw_list(ImVec2 corner, double width_px, Widgets& widgets);
   static int on_edit(ImGuiInputTextCallbackData* data);
 

@@ -48,6 +48,11 @@ std::string fitting_parts(std::string text, double room_px,
 
 std::string camera_text(const explore::Session& session, explore::LongitudeRange range) {
   const mars::Pose& pose = session.pose();
+  if (session.is_orthographic()) {
+    const auto shown_m = explore::shown_height_m(pose, session.screen(), session.ground());
+    return hemisphere_text({pose.lon_deg, pose.lat_deg}, range) + "   orthographic" +
+           (shown_m ? ", " + panel_length_text(*shown_m) + " high" : "") + "   " + attitude_text(pose);
+  }
   return hemisphere_text({pose.lon_deg, pose.lat_deg}, range) + "   " + panel_length_text(session.height_m()) +
          " above ground   " + attitude_text(pose);
 }

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <utility>
+#include <vector>
 
 namespace vpe::window {
 
@@ -39,6 +40,9 @@ std::optional<MeasuredDrawing> DrawingMeasurer::measure(const Request& request) 
     };
     out.ground = explore::ground_measures(*surface_, *request.drawing, options, request.stop);
     if (!out.ground) return std::nullopt;
+    std::vector<mars::LonLat> places = request.drawing->vertices;
+    if (request.drawing->kind == explore::DrawingKind::kPolygon) places.push_back(places.front());
+    out.along = explore::ground_along(*surface_, places);
   } catch (const std::exception& e) {
     out.error = e.what();
   }

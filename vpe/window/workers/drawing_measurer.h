@@ -11,6 +11,7 @@
 #include "vpe/base/latest_worker.h"
 #include "vpe/explore/drawing/drawing_measures.h"
 #include "vpe/explore/drawing/drawings.h"
+#include "vpe/explore/results/ground_along.h"
 
 namespace vpe::window {
 
@@ -18,6 +19,7 @@ struct MeasuredDrawing {
   explore::Drawings::Shared drawing;
   explore::SphereMeasures sphere;
   std::optional<explore::GroundMeasures> ground;  // nullopt after an error
+  explore::GroundAlong along;                     // at the point, or along line or outline
   std::string error;
 };
 

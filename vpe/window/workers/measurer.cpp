@@ -36,10 +36,13 @@ Measured Measurer::measure(std::uint64_t number, const MeasureRequest& request) 
   out.number = number;
   out.request = request;
   try {
-    if (last_.profile != nullptr && are_same(last_.request.places, request.places))
+    if (last_.profile != nullptr && are_same(last_.request.places, request.places)) {
       out.profile = last_.profile;
-    else
+      out.ground = last_.ground;
+    } else {
       out.profile = std::make_shared<const explore::Profile>(explore::make_profile(*surface_, request.places));
+      out.ground = explore::ground_of_profile(*surface_, out.profile->points);
+    }
     explore::SceneSight objects;
     if (open_scene_ && !request.scene.file.empty()) objects = open_scene_(request.scene);
     out.moves = objects.moves;

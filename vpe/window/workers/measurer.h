@@ -12,6 +12,7 @@
 #include "vpe/explore/measure/line_of_sight.h"
 #include "vpe/explore/measure/profile.h"
 #include "vpe/explore/measure/sight_scene.h"
+#include "vpe/explore/results/ground_along.h"
 
 namespace vpe::window {
 
@@ -27,6 +28,7 @@ struct Measured {
   std::uint64_t number = 0;  // returned by Measurer::request()
   MeasureRequest request;
   std::shared_ptr<const explore::Profile> profile;  // null after an error
+  explore::GroundAlong ground;                      // at the points of the profile
   std::optional<explore::LineOfSight> sight;        // between the first and the last place
   bool moves = false;  // objects of the scene do: at other times the sight may be another
   std::string error;

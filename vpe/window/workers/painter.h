@@ -16,6 +16,7 @@
 #include "vpe/core/frame.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
+#include "vpe/overlay/layer_files.h"
 #include "vpe/warp/image_grid.h"
 
 namespace vpe::window {
@@ -35,6 +36,8 @@ struct ImageRequest {
   std::shared_ptr<const scripts::GroundTracks> ground;
   // Reliefs that change the ground after that; null: none.
   std::shared_ptr<const std::vector<relief::ReliefSpec>> reliefs;
+  // The vector files of draw.settings, by path; null: the painter reads them.
+  std::shared_ptr<const overlay::LayersByFile> layers;
   std::optional<double> logged_s;  // its time in the log while a session is recorded
   bool keeps_ranges = false;       // also returns DrawnImage::range_m where there is one grid
   // The image is larger than its view by so many pixels on each side (core::with_margin), for a camera that turns on
