@@ -155,6 +155,7 @@ const std::vector<Layer>& layers() {
        "panorama",
        {"vpe/base", "mars", "vpe/core", "paging", "panorama/image", "panorama"}},
       {"panorama/match", "panorama", {"vpe/base", "mars", "vpe/core", "panorama/image", "panorama"}},
+      {"vpe/explore/images", "vpe::explore", {"vpe/core", "lod"}},
       {"vpe/explore/input", "vpe::explore", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/explore/files",
        "vpe::explore",

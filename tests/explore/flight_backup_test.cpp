@@ -1,5 +1,5 @@
 // Tests of the copies of flights with unsaved changes.
-#include "vpe/explore/files/flight_backup.h"
+#include "vpe/explore/flight_backup.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "vpe/explore/live_image.h"
+#include "vpe/explore/images/live_image.h"
 
 #include <gtest/gtest.h>
 

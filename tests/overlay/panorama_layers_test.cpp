@@ -175,7 +175,7 @@ TEST(PanoramaLines, LieOnTheGroundWithinAPixelInManyViews) {
                           0,
                           0};
     const Around around(ball, pose, 512, 200);
-    const Places places = random_track(random, {pose.lon_deg, pose.lat_deg}, 5, 4);
+    const Places places = random_track(random, {pose.lon_deg, pose.lat_deg}, 9, 4);
     const std::vector<SceneLayer> layers{{drawn_features({{track(places), {{"stroke", "#ffffff"}}}}), 1}};
     PanoramaLines lines(layers, sights(around), vpe::core::HiddenLines::kLeftOut, pool, 1 << 20);
     const Whole whole = drawn(lines, around, 512, 200);
@@ -242,7 +242,7 @@ TEST(PanoramaLines, RegionsThreadsAndMemoryChangeNoByte) {
   EXPECT_EQ(narrow.anchors().size(), 2U);
   EXPECT_EQ(narrow.anchors()[0].size(), plain.anchors()[0].size());
   EXPECT_GT(plain.anchors()[0].size(), 2U);
-  EXPECT_LE(plain.anchors()[0].size(), 20U);
+  EXPECT_LE(plain.anchors()[0].size(), all.size());
 }
 
 TEST(PanoramaLines, GoOnAcrossTheSeam) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "mars/sources/layered_image.h"
 #include "tests/window/explore_window_fixture.h"
 #include "vpe/base/file.h"
 
@@ -195,6 +196,67 @@ TEST_F(LayersPanelTest, APlanetWithoutImageLayersSaysSo) {
   open_above();
   EXPECT_TRUE(window_->layers().images_shown().empty());
   EXPECT_EQ(window_->session().settings().get("image.layers"), "");
+}
+
+// An image of one colour within a cap.
+class PlainImage : public mars::ImageSource {
+ public:
+  PlainImage(std::string name, base::Rgb colour, double reach_rad)
+      : name_(std::move(name)), colour_(colour), reach_rad_(reach_rad) {}
+  std::vector<mars::SourceInfo> infos() const override {
+    mars::SourceInfo info;
+    info.name = name_;
+    info.resolution_m = spacing_m();
+    return {info};
+  }
+  void sample(std::span<const glm::dvec3> directions, double, std::span<base::Rgb> colours,
+              std::span<std::uint8_t> alpha) const override {
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      colours[n] = colour_;
+      alpha[n] = mars::angle_between_rad(directions[n], mars::direction({20, 10})) <= reach_rad_ ? 255 : 0;
+    }
+  }
+  double spacing_in(const mars::Cap&) const override { return spacing_m(); }
+
+ private:
+  double spacing_m() const { return reach_rad_ > 1 ? 80'000 : 40'000; }
+
+  std::string name_;
+  base::Rgb colour_;
+  double reach_rad_;
+};
+
+TEST_F(LayersPanelTest, ImageLayersAreSwitchedAndMoved) {
+  const auto both = mars::stack_images_apart(
+      {{"wide", std::make_shared<PlainImage>("wide.tif", base::Rgb{220, 20, 20}, 4.0)},
+       {"inset", std::make_shared<PlainImage>("inset.tif", base::Rgb{20, 20, 220}, 0.3)}});
+  paging::BuildOptions options;
+  options.output = (folder_ / "layers.vpe").string();
+  options.base_spacing_m = 400'000;
+  options.tile_k = 4;
+  options.resampling_posts = 1000;
+  paging::build_planet(options, test_support::FakeElevation(test_support::bumpy_height), both.get());
+  planet_ = paging::PlanetFile::open(options.output);
+  ASSERT_EQ(extra_.session.settings.set("mode", "textured"), "");
+  ASSERT_EQ(extra_.session.settings.set("light", "off"), "");
+  open_above();
+  const auto setting = [&] { return window_->session().settings().get("image.layers").value_or("?"); };
+  EXPECT_EQ(setting(), "");
+  EXPECT_TRUE(is_blue({20, 10}));
+  press_beside("As the planet was built");
+  EXPECT_EQ(setting(), "wide;inset");
+  EXPECT_TRUE(is_blue({20, 10}));
+  press_beside("image inset/inset##on");
+  EXPECT_EQ(setting(), "wide");
+  EXPECT_TRUE(is_red({20, 10}));
+  press_beside("image inset/inset##on");
+  EXPECT_TRUE(is_blue({20, 10}));
+  press_beside("image inset/\u2193");
+  EXPECT_EQ(setting(), "inset;wide");
+  EXPECT_TRUE(is_red({20, 10}));
+  press_beside("As the planet was built");
+  EXPECT_EQ(setting(), "");
+  EXPECT_TRUE(is_blue({20, 10}));
 }
 
 }  // namespace

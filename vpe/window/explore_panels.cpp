@@ -51,13 +51,6 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
   ImGui::BeginDisabled(orthographic);
   if (widgets.slide("Field of view", fov, 5, 120, "%.1f°", true)) session.set_fov(fov);
   ImGui::EndDisabled();
-  if (widgets.toggle("Orthographic", orthographic,
-                     "O: parallel lines of sight, so that the view has one scale")) {
-    if (const std::string problem = session.set_orthographic(orthographic); !problem.empty()) {
-      state.message = problem;
-      state.message_is_error = true;
-    }
-  }
   widgets.slide("Speed", state.speed, WindowState::kSlowest, WindowState::kFastest, "%.2f x", true,
                 "factor on the speed of keys and sticks, which also grows with the height");
   ImGui::PopItemWidth();
@@ -66,6 +59,14 @@ void draw_control_panel(explore::Session& session, double scale, WindowState& st
   if (widgets.button("Level", "G: no roll")) session.level();
   ImGui::SameLine();
   if (widgets.button("Look down", "U")) session.look_down(false);
+  ImGui::SameLine();
+  if (widgets.toggle("Orthographic", orthographic,
+                     "O: parallel lines of sight, so that the view has one scale")) {
+    if (const std::string problem = session.set_orthographic(orthographic); !problem.empty()) {
+      state.message = problem;
+      state.message_is_error = true;
+    }
+  }
   ImGui::Separator();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Drawn by");

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mars/geodesy/pose.h"
+#include "vpe/explore/images/live_image.h"
 #include "vpe/explore/input/head_tracker.h"
-#include "vpe/explore/live_image.h"
 #include "vpe/explore/screens/screen_view.h"
 #include "vpe/window/screens/screen_maker.h"
 #include "vpe/window/screens/screen_window.h"
