@@ -122,7 +122,7 @@ TEST_F(Panorama, FacetsAndEquirectangularDescribeThemselves) {
   EXPECT_EQ(facets.map.kind, panorama::MapKind::kFacets);
   EXPECT_EQ(facets.map.facets, 5);
   EXPECT_NEAR(facets.map.to_direction(50, 0).azimuth_deg, 10, 1e-9);
-  make("e.png", {"--projection", "equirectangular", "--width", "400"});
+  make("e.png", {"--projection", "equirectangular", "--width", "400", "--set", "colour=none"});
   const auto whole = panorama::describe(dir_ / "e.png");
   EXPECT_EQ(whole.sources.size(), 2U);
   EXPECT_EQ(whole.map.height_px, 200);
@@ -363,7 +363,7 @@ TEST_F(Panorama, BadInputIsReportedBeforeAnyWork) {
   expect_failure({"panorama", planet().string(), "--at", "1,2", "-o", "x.png"}, 2, {"--height", "--altitude"});
   expect_failure({"panorama", planet().string(), "--at", "1,92", "--height", "2", "-o", "x.png"}, 2,
                  {"latitude"});
-  expect_failure({"panorama", planet().string(), "--at", "north", "--height", "2", "-o", "x.png"}, 2,
+  expect_failure({"panorama", planet().string(), "--at", "nowhere", "--height", "2", "-o", "x.png"}, 2,
                  {"LON,LAT"});
   // Hills of 3 km rise here: so low is under ground.
   expect_failure({"panorama", planet().string(), "--at", "90,0", "--altitude", "0", "-o", "x.png", "-q"}, 1,

@@ -62,9 +62,9 @@ core::Place place_named(const std::string& option, const std::string& name) {
   if (parts == 1) return **std::ranges::find_if(near, has_part);
   const std::string names = list_of(near);
   throw UsageError(option + " '" + name + "': " +
-                   (names.empty() ? "no place has such a name; 'vpe find' searches them"
+                   (names.empty() ? "neither LON,LAT nor the name of a place; 'vpe find' searches names"
                     : parts > 1   ? "several names come near: " + names
-                                  : "no place has such a name; these come near: " + names));
+                                  : "neither LON,LAT nor the name of a place; these come near: " + names));
 }
 
 bool looks_like_name(const std::string& text) {
