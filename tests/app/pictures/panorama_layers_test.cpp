@@ -22,7 +22,7 @@ constexpr double kHeight_m = 30e3;
 
 // A ring about the camera at 10, 5, an area in the north with a hole, a point in the east.
 constexpr char kThings[] = R"({"type": "FeatureCollection", "features": [
-  {"type": "Feature", "properties": {"stroke": "#ff00ff", "stroke-width": 4, "legend": "Ring"},
+  {"type": "Feature", "properties": {"stroke": "#ff00ff", "stroke-width": 10, "legend": "Ring"},
    "geometry": {"type": "LineString", "coordinates": [[11.5, 5], [10.9, 6], [9.2, 6.1], [8.4, 4.8], [9.5, 3.9], [11.5, 5]]}},
   {"type": "Feature", "properties": {"stroke-opacity": 0, "fill": "#00ff00", "fill-opacity": 1, "legend": "Unit"},
    "geometry": {"type": "Polygon", "coordinates": [[[9, 6.5], [11, 6.5], [11, 8], [9, 8], [9, 6.5]],
@@ -118,8 +118,9 @@ TEST_F(PanoramaLayers, LieOnTheGroundInEveryProjection) {
        {Words{"--projection", "cylinder"}, Words{"--projection", "equirectangular"},
         Words{"--projection", "facets", "--facets", "5"}, Words{"--from", "300", "--to", "140"},
         Words{"--backend", "polygon", "--projection", "facets"}}) {
-    const RgbImage plain = make("plain.png", with(kind, {"--yaw", "33"}));
-    const RgbImage image = make("layers.png", with(with(kind, {"--yaw", "33"}), layers()));
+    const Words turned = kind.front() == "--from" ? kind : with(kind, {"--yaw", "33"});
+    const RgbImage plain = make("plain.png", turned);
+    const RgbImage image = make("layers.png", with(turned, layers()));
     const panorama::PanoramaMap map = panorama::describe(dir_ / "layers.png").map;
     EXPECT_GT(check_ring(ground, image, map, eyes, Eye::kLeft, 0), 500) << kind[1];
     // Areas: inside, in the hole, beside.
