@@ -1,4 +1,4 @@
-// Where the image of one eye of a panorama shows points.
+// Computes where the image of one eye of a panorama shows points.
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -187,7 +187,7 @@ class PlanetFile : public std::enable_shared_from_this<PlanetFile> {
   mutable vpe::base::ObjectPool<Connection> connections_;  // unused where file_ is set
   std::shared_ptr<const PlanetFile> earlier_;
   std::uint64_t compared_version_ = 0;
-  // Of the layers of the file, by layer and sorted; null without layers.
+  // Holds the keys of the tiles of each layer of the file, sorted; null without layers.
   std::shared_ptr<const std::vector<std::vector<std::int64_t>>> layer_keys_;
   std::vector<vpe::core::ImageLayerLook> shown_layers_;
   std::shared_ptr<const std::vector<std::int64_t>> composed_keys_;  // of shown_layers_, sorted; null without

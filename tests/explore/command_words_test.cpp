@@ -68,11 +68,13 @@ TEST_F(CommandWords, OfAnImageHaveSizeBackendEyesAndSettings) {
 TEST_F(CommandWords, OfPanoramasLeaveOutOverlaysThatTheyDoNotHave) {
   ASSERT_EQ(session_.set("overlay.scale", "on"), "");
   ASSERT_EQ(session_.set("overlay.distances", "on"), "");
+  ASSERT_EQ(session_.set("overlay.layers.legend", "on"), "");
   ASSERT_EQ(session_.set("sun.elevation", "12"), "");
   MakeOptions options;
   options.width_px = 8192;
   options.output = "p.jpg";
   const Words words = panorama_words(session_, options);
+  EXPECT_TRUE(has_pair(words, "--set", "overlay.layers.legend=on"));
   EXPECT_EQ(words.front(), "panorama");
   EXPECT_EQ(words[1], "--at=-59.2,-13.7");
   EXPECT_EQ(words[2], "--altitude=40000");

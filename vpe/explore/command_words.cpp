@@ -13,7 +13,9 @@ namespace {
 using base::format_number;
 
 constexpr std::string_view kOverlays = "overlay.";
-constexpr std::array<std::string_view, 3> kOfPanoramas{"overlay.names", "overlay.distances", "overlay.compass"};
+constexpr std::array<std::string_view, 6> kOfPanoramas{"overlay.names",         "overlay.distances",
+                                                       "overlay.compass",       "overlay.layers",
+                                                       "overlay.layers.hidden", "overlay.layers.legend"};
 
 template <class Keeps>
 void add_settings(const Session& session, const Keeps& keeps, std::vector<std::string>& words) {

@@ -1,4 +1,4 @@
-// What a click in an image or on a map asks of layers.
+// Computes what a click in an image or on a map asks of layers.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What is at a place: its ground, and the name that is nearest to it.
+// Tells what is at a place: its ground, and the name that is nearest to it.
 //
 // Typical usage:
 //   const PlaceReport here = what_is_here(surface, place, names);

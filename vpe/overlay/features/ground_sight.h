@@ -1,4 +1,4 @@
-// How an image shows the ground: what lines are draped with.
+// Describes how an image shows the ground: what lines are draped with.
 #pragma once
 
 #include <glm/vec2.hpp>

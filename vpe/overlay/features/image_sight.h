@@ -1,4 +1,4 @@
-// How an image with ranges shows the ground.
+// Describes how an image with ranges shows the ground.
 #pragma once
 
 #include <array>

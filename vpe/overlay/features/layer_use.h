@@ -1,4 +1,4 @@
-// Which styles of a layer an image shows.
+// Holds which styles of a layer an image shows.
 #pragma once
 
 #include <cstdint>
