@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lod/mesh/greedy_heap.h"
@@ -71,7 +72,7 @@ class GreedyMesher {
   TileMesh grow(const Lines& lines) {
     queue_.clear();
     forget_unchecked();
-    for (int f = 0; f < topology_.face_count(); ++f) touch(lines, f);
+    for (int f = 0; f < topology_.face_count(); ++f) recall(lines, f);
     do {
       while (!queue_.empty() && vertices_.size() < kMaxVertices) {
         const QueuedPost worst = queue_.top();
@@ -82,13 +83,44 @@ class GreedyMesher {
     return result(intervals_);
   }
 
+  // What is known of a triangle, from mesh to mesh.
+  struct FaceState {
+    WorstPost worst;
+    double edges_m = kUnknown;  // the largest error along its edges, of those looked at
+    bool is_scanned = false;
+    bool is_unchecked = false;
+  };
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+  FaceState& state(int face) {
+    const auto f = static_cast<std::size_t>(face);
+    if (f >= faces_.size()) faces_.resize(f + 1);
+    return faces_[f];
+  }
+
+  // Queues a triangle that has changed.
   template <class Lines>
   void touch(const Lines& lines, int face) {
-    rescan(lines, face);
-    const auto f = static_cast<std::size_t>(face);
-    if (f >= is_unchecked_.size()) is_unchecked_.resize(f + 1, 0);
-    if (is_unchecked_[f] != 0) return;
-    is_unchecked_[f] = 1;
+    FaceState& known = state(face);
+    known.worst = scan(lines, face);
+    known.edges_m = kUnknown;
+    known.is_scanned = true;
+    queue_.set(face, known.worst, tolerance_m_);
+    want_check(face, known);
+  }
+
+  // Queues a triangle for a new tolerance. Errors along edges only become fewer while their posts become vertices.
+  template <class Lines>
+  void recall(const Lines& lines, int face) {
+    FaceState& known = state(face);
+    if (!known.is_scanned) return touch(lines, face);
+    queue_.set(face, known.worst, tolerance_m_);
+    if (known.edges_m > tolerance_m_) want_check(face, known);
+  }
+
+  void want_check(int face, FaceState& known) {
+    if (known.is_unchecked) return;
+    known.is_unchecked = true;
     unchecked_.push_back(face);
   }
 
@@ -97,14 +129,20 @@ class GreedyMesher {
   template <class Lines>
   bool repair_edges(const Lines& lines) {
     wanted_.clear();
+    for (const int f : unchecked_) faces_[static_cast<std::size_t>(f)].edges_m = 0;
     for (const int f : unchecked_) {
+      FaceState& here = faces_[static_cast<std::size_t>(f)];
       int h = topology_.first_halfedge(f);
       for (int side = 0; side < 3; ++side, h = topology_.next(h)) {
         // An edge between two such triangles is checked from the first of them.
         const int other = topology_.across(h);
-        const int beyond = other < 0 ? -1 : topology_.face(other);
-        if (beyond >= 0 && beyond < f && is_unchecked_[static_cast<std::size_t>(beyond)] != 0) continue;
-        const WorstPost worst = field_.worst_crossing(vertex(topology_.from(h)), vertex(topology_.to(h)));
+        const int beyond = other < 0 ? f : topology_.face(other);
+        FaceState& there = faces_[static_cast<std::size_t>(beyond)];
+        if (beyond < f && there.is_unchecked) continue;
+        const WorstPost worst =
+            field_.worst_crossing(vertex(topology_.from(h)), vertex(topology_.to(h)), tolerance_m_);
+        here.edges_m = std::max(here.edges_m, worst.geometric_error_m);
+        there.edges_m = std::max(there.edges_m, worst.geometric_error_m);
         if (worst.geometric_error_m > tolerance_m_) wanted_.push_back({worst.post, f});
       }
     }
@@ -123,7 +161,7 @@ class GreedyMesher {
   }
 
   void forget_unchecked() {
-    for (const int f : unchecked_) is_unchecked_[static_cast<std::size_t>(f)] = 0;
+    for (const int f : unchecked_) faces_[static_cast<std::size_t>(f)].is_unchecked = false;
     unchecked_.clear();
   }
 
@@ -150,6 +188,8 @@ class GreedyMesher {
   void start(const Lines& lines) {
     topology_.start();
     vertices_.clear();
+    faces_.clear();
+    unchecked_.clear();
     const std::uint32_t last = side_ - 1;
     for (const std::uint32_t post : {0U, last, last * side_ + last, last * side_}) {
       vertices_.push_back(corner(lines, post));
@@ -180,6 +220,7 @@ class GreedyMesher {
         star_.clear();
         legalise(lines, v,
                  topology_.split_edge(topology_.border_halfedge(merged.back().vertex, have[next].vertex), v));
+        for (const int f : star_) state(f).is_scanned = false;
         merged.push_back({along, v});
       }
       merged.insert(merged.end(), have.begin() + static_cast<std::ptrdiff_t>(next), have.end());
@@ -239,12 +280,12 @@ class GreedyMesher {
   }
 
   template <class Lines>
-  void rescan(const Lines& lines, int face) {
+  WorstPost scan(const Lines& lines, int face) const {
     const int h = topology_.first_halfedge(face);
     const Corner& a = vertex(topology_.from(h));
     const Corner& b = vertex(topology_.to(h));
     const Corner& c = vertex(topology_.to(topology_.next(h)));
-    queue_.set(face, Lines::has_no_post(a, b, c) ? WorstPost{} : field_.worst(lines, a, b, c), tolerance_m_);
+    return Lines::has_no_post(a, b, c) ? WorstPost{} : field_.worst(lines, a, b, c);
   }
 
   template <class Lines>
@@ -282,7 +323,7 @@ class GreedyMesher {
   std::vector<int> star_;
   std::vector<int> stack_;
   std::vector<int> unchecked_;  // triangles whose edges repair_edges() has not checked
-  std::vector<std::uint8_t> is_unchecked_;
+  std::vector<FaceState> faces_;
   std::vector<std::pair<std::uint32_t, int>> wanted_;
   // Border vertices of the sides south, east, north, west, counter-clockwise, by their distance along the side.
   struct BorderVertex {

@@ -17,12 +17,66 @@ struct Crossing {
 
 }  // namespace
 
-WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const {
+double PostField::crossing_bound_m(const Corner& a, const Corner& b) const {
+  const auto ax = static_cast<double>(a.x);
+  const auto ay = static_cast<double>(a.y);
+  const double dx = static_cast<double>(b.x) - ax;
+  const double dy = static_cast<double>(b.y) - ay;
+  const double per_x = 1.0 / dx;
+  const double per_y = 1.0 / dy;
+  const double wa = w_[a.post];
+  const double dw = w_[b.post] - wa;
+  const std::size_t east = dx > 0 ? 1 : 0;
+  const std::size_t north = dy > 0 ? 1 : 0;
+  std::size_t i = a.i + east - 1;
+  std::size_t j = a.j + north - 1;
+  double most = 0;
+  double t = 0;
+  while (true) {
+    const double* low = w_.data() + j * side_ + i;
+    const double* high = low + side_;
+    const double t_column = (x_[i + east] - ax) * per_x;
+    const double t_row = (y_[j + north] - ay) * per_y;
+    // Within rounding of the last corner there is no error.
+    const double next = std::min(t_column, t_row);
+    const bool is_last = next > 1.0 - 1e-11;
+    const double end = is_last ? 1.0 : next;
+    const auto across = [&](double at) { return (ax + at * dx - x_[i]) * per_column_[i]; };
+    const auto up = [&](double at) { return (ay + at * dy - y_[j]) * per_row_[j]; };
+    const double s0 = across(t);
+    const double s1 = across(end);
+    const double r1 = up(end);
+    const double g0 = s0 - up(t);
+    const double g1 = s1 - r1;
+    if (g0 * g1 < 0) {
+      const double part = g0 / (g0 - g1);
+      const double surface = low[0] + (s0 + part * (s1 - s0)) * (high[1] - low[0]);
+      most = std::max(most, std::abs(surface - (wa + (t + part * (end - t)) * dw)));
+    }
+    if (is_last) break;
+    const double chord = wa + end * dw;
+    if (t_column <= t_row) {
+      most = std::max(most, std::abs(low[east] + r1 * (high[east] - low[east]) - chord));
+      i += 2 * east - 1;
+    } else {
+      const double* line = north != 0 ? high : low;
+      most = std::max(most, std::abs(line[0] + s1 * (line[1] - line[0]) - chord));
+      j += 2 * north - 1;
+    }
+    t = end;
+  }
+  // The error is R |1 - chord / S|, and S is least where it is nearer by it than the lower end.
+  const double ratio = most / std::min(wa, wa + dw);
+  return lowest_radius_m_ * (ratio + 2.0 * ratio * ratio + 1e-12);
+}
+
+WorstPost PostField::worst_crossing(const Corner& from, const Corner& to, double tolerance_m) const {
   const Corner& a = from.post < to.post ? from : to;
   const Corner& b = from.post < to.post ? to : from;
   WorstPost worst;
   if (a.i == b.i || a.j == b.j) return worst;  // along a line of the grid, whose posts have been visited
   if (b.i == a.i + 1 && b.j == a.j + 1) return worst;  // S's own diagonal
+  if (const double bound_m = crossing_bound_m(a, b); bound_m <= tolerance_m) return {bound_m, 0};
   const auto ax = static_cast<double>(a.x);
   const auto ay = static_cast<double>(a.y);
   const double dx = static_cast<double>(b.x) - ax;

@@ -1,6 +1,7 @@
 #include "lod/mesh/greedy_scan.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lod {
 
@@ -8,8 +9,8 @@ void PostField::load(const Posts& posts, double radius_m) {
   side_ = static_cast<std::uint32_t>(posts.side());
   const GridLines lines = grid_lines(posts.key, posts.intervals);
   const std::size_t count = posts.height_m.size();
-  w_.resize(count);
-  weight_.resize(count);
+  w_.resize(count + kScanPad);
+  weight_.resize(count + kScanPad);
   lowest_radius_m_ = radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end());
   for (std::size_t j = 0; j < side_; ++j) {
     const double* height = posts.height_m.data() + j * side_;
@@ -27,8 +28,16 @@ void PostField::load(const Posts& posts, double radius_m) {
 }
 
 void PostField::set_lines(const std::vector<std::int64_t>& x, const std::vector<std::int64_t>& y) {
+  has_exact_sides_ = std::max(x.back(), y.back()) < kMostExact;
   x_.assign(x.begin(), x.end());
   y_.assign(y.begin(), y.end());
+  const auto inverse_widths = [](const std::vector<double>& line, std::vector<double>& inverse) {
+    inverse.clear();
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) inverse.push_back(1.0 / (line[k + 1] - line[k]));
+  };
+  inverse_widths(x_, per_column_);
+  inverse_widths(y_, per_row_);
+  x_.resize(x_.size() + kScanPad, static_cast<double>(2 * kMostExact));
 }
 
 void PostField::ignore_borders() {

@@ -1,14 +1,16 @@
-// The errors of the posts under a flat triangle, scanned row by row. Internal to lod.
+// The errors of the posts under a flat triangle. Internal to lod.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <cstring>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "lod/mesh/greedy_heap.h"
 #include "lod/mesh/greedy_lines.h"
+#include "lod/mesh/scan_kernel.h"
 #include "lod/tree/posts.h"
 
 namespace lod {
@@ -31,27 +33,51 @@ class PostField {
 
   // Returns the largest error where an edge of the mesh crosses the lines of the reference surface, and the
   // post to insert against it. Crossings whose post is a vertex or on the border have no error. The result is
-  // the same for both directions of the edge.
-  WorstPost worst_crossing(const Corner& from, const Corner& to) const;
+  // the same for both directions of the edge. Below the tolerance the error is a bound, and there is no post.
+  WorstPost worst_crossing(const Corner& from, const Corner& to, double tolerance_m) const;
 
  private:
-  struct Plane {
-    double w, dx, dy;  // w at corner `at`, slopes
-    double x, y;
-  };
-  Plane plane(const Corner& a, const Corner& b, const Corner& c) const;
-  void scan_row(const Plane& plane, std::uint32_t j, int first, int end, WorstPost& worst) const;
+  // Triangles of at most so many columns are scanned by the columns of a box, wider ones by rows between their sides.
+  static constexpr std::uint32_t kNarrow = 8;
+  // Coordinates below this have exact products of differences in double, and exact sums of such products.
+  static constexpr std::int64_t kMostExact = std::int64_t{1} << 25;
 
+  // Returns the values of a side, at least 0.5 away from 0.
+  static ScannedSide side_of(const Corner& from, const Corner& to);
+  ScannedPlane plane(const Corner& a, const Corner& b, const Corner& c) const;
+  ScannedPosts posts() const { return {w_.data(), weight_.data(), x_.data(), y_.data(), side_}; }
+  // Bounds the errors of worst_crossing() where the edge is none of S's, with few divisions.
+  double crossing_bound_m(const Corner& a, const Corner& b) const;
+  template <class Lines>
+  WorstPost worst_by_rows(const Lines& lines, const ScannedPlane& flat, const Corner& a, const Corner& b,
+                          const Corner& c) const;
+
+  // With kScanPad entries more.
   std::vector<double> w_;
   std::vector<double> weight_;  // r / w_post; 0 for posts that are vertices or on a border
   std::vector<double> x_;
   std::vector<double> y_;
+  std::vector<double> per_column_;  // 1 / width, by interval
+  std::vector<double> per_row_;
   std::uint32_t side_ = 0;
   double lowest_radius_m_ = 0;
+  bool has_exact_sides_ = false;
 };
 
 template <class Lines>
 WorstPost PostField::worst(const Lines& lines, const Corner& a, const Corner& b, const Corner& c) const {
+  const ScannedPlane flat = plane(a, b, c);
+  // Posts in the last column and row are corners or belong to neighbours.
+  const ScannedBox box{std::min(std::min(a.i, b.i), c.i), std::max(std::max(a.i, b.i), c.i),
+                       std::min(std::min(a.j, b.j), c.j), std::max(std::max(a.j, b.j), c.j)};
+  if (box.i1 - box.i0 <= kNarrow && has_exact_sides_)
+    return worst_in_box(posts(), flat, {side_of(a, b), side_of(b, c), side_of(c, a)}, box);
+  return worst_by_rows(lines, flat, a, b, c);
+}
+
+template <class Lines>
+WorstPost PostField::worst_by_rows(const Lines& lines, const ScannedPlane& flat, const Corner& a,
+                                   const Corner& b, const Corner& c) const {
   const Corner* low = &a;
   const Corner* middle = &b;
   const Corner* high = &c;
@@ -60,11 +86,16 @@ WorstPost PostField::worst(const Lines& lines, const Corner& a, const Corner& b,
   if (middle->j < low->j) std::swap(low, middle);
 
   WorstPost worst;
-  const Plane flat = plane(a, b, c);
   const std::int64_t turn =
       (high->x - low->x) * (middle->y - low->y) - (high->y - low->y) * (middle->x - low->x);
   const bool middle_left = turn > 0;
   typename Lines::Walk whole(lines, {low->x, low->y, high->x, high->y});
+  std::array<ScannedRow, 32> rows;
+  std::size_t count = 0;
+  const auto scan = [&] {
+    scan_rows(posts(), flat, std::span(rows).first(count), worst);
+    count = 0;
+  };
   const auto part = [&](const Corner& from, const Corner& to) {
     if (from.j == to.j) return;
     typename Lines::Walk half(lines, {from.x, from.y, to.x, to.y});
@@ -72,19 +103,26 @@ WorstPost PostField::worst(const Lines& lines, const Corner& a, const Corner& b,
       const std::int64_t y = lines.y()[j];
       const int one = half.first(y);
       const int two = whole.first(y);
-      if (middle_left) {
-        scan_row(flat, j, one, two, worst);
-      } else {
-        scan_row(flat, j, two, one, worst);
-      }
+      rows[count++] = middle_left ? ScannedRow{j, one, two} : ScannedRow{j, two, one};
+      if (count == rows.size()) scan();
     }
   };
   part(*low, *middle);
   part(*middle, *high);
+  scan();
   return worst;
 }
 
-inline PostField::Plane PostField::plane(const Corner& a, const Corner& b, const Corner& c) const {
+inline ScannedSide PostField::side_of(const Corner& from, const Corner& to) {
+  const auto dx = static_cast<double>(to.x - from.x);
+  const auto dy = static_cast<double>(to.y - from.y);
+  // Values at posts are whole numbers. Posts on sides that ascend, or that run west, belong to the neighbour.
+  const bool has_own_posts = dy < 0 || (dy == 0 && dx > 0);
+  const double at = dy * static_cast<double>(from.x) - dx * static_cast<double>(from.y);
+  return {at + (has_own_posts ? 0.5 : -0.5), -dy, dx};
+}
+
+inline ScannedPlane PostField::plane(const Corner& a, const Corner& b, const Corner& c) const {
   // Starts at the lowest post, so that the bits do not depend on the order of the corners.
   const Corner* o = &a;
   const Corner* p = &b;
@@ -108,49 +146,6 @@ inline PostField::Plane PostField::plane(const Corner& a, const Corner& b, const
   const double scale = 1.0 / (px * qy - py * qx);
   return {wo, (wp * qy - wq * py) * scale, (wq * px - wp * qx) * scale, static_cast<double>(o->x),
           static_cast<double>(o->y)};
-}
-
-inline void PostField::scan_row(const Plane& plane, std::uint32_t j, int first, int end,
-                                WorstPost& worst) const {
-  using TwoDoubles = double __attribute__((vector_size(16)));
-  const auto load = [](const double* from) {
-    TwoDoubles pair;
-    std::memcpy(&pair, from, sizeof pair);
-    return pair;
-  };
-  if (first >= end) return;
-  const std::size_t row = static_cast<std::size_t>(j) * side_;
-  const double w_row = plane.w + plane.dy * (y_[j] - plane.y);
-  const double* x = x_.data() + first;
-  const double* w = w_.data() + row + first;
-  const double* weight = weight_.data() + row + first;
-  const int count = end - first;
-  const auto error = [&](int k) {
-    return std::abs((w[k] - (w_row + plane.dx * (x[k] - plane.x))) * weight[k]);
-  };
-  const auto pair_error = [&](int k) {
-    const TwoDoubles e = (load(w + k) - (w_row + plane.dx * (load(x + k) - plane.x))) * load(weight + k);
-    return -e > e ? -e : e;
-  };
-  const auto larger = [](TwoDoubles a, TwoDoubles b) { return a > b ? a : b; };
-  // Two independent maxima, so that one does not wait for the other.
-  TwoDoubles one{0.0, 0.0};
-  TwoDoubles two{0.0, 0.0};
-  int k = 0;
-  for (; k + 3 < count; k += 4) {
-    one = larger(one, pair_error(k));
-    two = larger(two, pair_error(k + 2));
-  }
-  if (k + 1 < count) {
-    one = larger(one, pair_error(k));
-    k += 2;
-  }
-  one = larger(one, two);
-  double row_worst = one[0] > one[1] ? one[0] : one[1];
-  if (k < count && error(k) > row_worst) row_worst = error(k);
-  if (row_worst <= worst.geometric_error_m) return;
-  for (k = 0; k + 1 < count && error(k) != row_worst;) ++k;
-  worst = {row_worst, static_cast<std::uint32_t>(row + static_cast<std::size_t>(first + k))};
 }
 
 }  // namespace lod

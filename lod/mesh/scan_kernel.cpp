@@ -1,0 +1,138 @@
+#include "lod/mesh/scan_kernel.h"
+
+#include <cmath>
+
+// Highway compiles this file once for each instruction set and selects the best one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lod/mesh/scan_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace lod::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::CappedTag<double, kScanPad>;
+using DoubleVec = hn::Vec<Doubles>;
+
+// Replaces `worst` by the worst of some posts, of equals the first.
+HWY_INLINE void take_worse(const DoubleVec error, const DoubleVec post, WorstPost& worst) {
+  const Doubles d;
+  const DoubleVec most = hn::MaxOfLanes(d, error);
+  const double most_m = hn::GetLane(most);
+  if (most_m < worst.geometric_error_m) return;
+  const DoubleVec no_post = hn::Set(d, 4294967295.0);
+  const auto first = static_cast<std::uint32_t>(
+      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(error, most), post, no_post))));
+  if (most_m > worst.geometric_error_m || first < worst.post) worst = {most_m, first};
+}
+
+WorstPost box_kernel(const ScannedPosts& posts, const ScannedPlane& plane,
+                     const std::array<ScannedSide, 3>& sides, const ScannedBox& box) {
+  const Doubles d;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  const DoubleVec zero = hn::Zero(d);
+  const auto side_at = [&](const ScannedSide& side, DoubleVec x) HWY_ATTR {
+    return hn::Add(hn::Set(d, side.at), hn::Mul(hn::Set(d, side.along_x), x));
+  };
+  const DoubleVec step_0 = hn::Set(d, sides[0].along_y);
+  const DoubleVec step_1 = hn::Set(d, sides[1].along_y);
+  const DoubleVec step_2 = hn::Set(d, sides[2].along_y);
+  const DoubleVec row_posts = hn::Set(d, static_cast<double>(posts.side));
+  WorstPost worst;
+  for (std::uint32_t i = box.i0; i < box.i1; i += lanes) {
+    const DoubleVec x = hn::LoadU(d, posts.x + i);
+    const DoubleVec at_0 = side_at(sides[0], x);
+    const DoubleVec at_1 = side_at(sides[1], x);
+    const DoubleVec at_2 = side_at(sides[2], x);
+    const DoubleVec w_x = hn::Mul(hn::Set(d, plane.dx), hn::Sub(x, hn::Set(d, plane.x)));
+    std::size_t post = box.j0 * posts.side + i;
+    DoubleVec here = hn::Iota(d, static_cast<double>(post));
+    DoubleVec most = zero;
+    DoubleVec most_at = zero;
+    for (std::uint32_t j = box.j0; j < box.j1; ++j, post += posts.side, here = hn::Add(here, row_posts)) {
+      const double y_j = posts.y[j];
+      const DoubleVec y = hn::Set(d, y_j);
+      const DoubleVec w_row = hn::Set(d, plane.w + plane.dy * (y_j - plane.y));
+      const DoubleVec difference = hn::Sub(hn::LoadU(d, posts.w + post), hn::Add(w_row, w_x));
+      const DoubleVec error = hn::Abs(hn::Mul(difference, hn::LoadU(d, posts.weight + post)));
+      const DoubleVec least =
+          hn::Min(hn::Min(hn::Add(at_0, hn::Mul(step_0, y)), hn::Add(at_1, hn::Mul(step_1, y))),
+                  hn::Add(at_2, hn::Mul(step_2, y)));
+      // In each column the first of equals stays.
+      const auto is_worse = hn::And(hn::Gt(least, zero), hn::Gt(error, most));
+      most = hn::IfThenElse(is_worse, error, most);
+      most_at = hn::IfThenElse(is_worse, here, most_at);
+    }
+    take_worse(most, most_at, worst);
+  }
+  return worst;
+}
+
+void rows_kernel(const ScannedPosts& posts, const ScannedPlane& plane, std::span<const ScannedRow> rows,
+                 WorstPost& worst) {
+  const Doubles d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const DoubleVec dx = hn::Set(d, plane.dx);
+  const DoubleVec plane_x = hn::Set(d, plane.x);
+  for (const ScannedRow& row : rows) {
+    const int count = row.end - row.first;
+    if (count <= 0) continue;
+    const std::size_t first = row.j * posts.side + static_cast<std::size_t>(row.first);
+    const double* x = posts.x + row.first;
+    const double* w = posts.w + first;
+    const double* weight = posts.weight + first;
+    const double w_row = plane.w + plane.dy * (posts.y[row.j] - plane.y);
+    const DoubleVec row_w = hn::Set(d, w_row);
+    const auto errors = [&](int k) HWY_ATTR {
+      const DoubleVec flat = hn::Add(row_w, hn::Mul(dx, hn::Sub(hn::LoadU(d, x + k), plane_x)));
+      return hn::Abs(hn::Mul(hn::Sub(hn::LoadU(d, w + k), flat), hn::LoadU(d, weight + k)));
+    };
+    const auto error = [&](int k) {
+      return std::abs((w[k] - (w_row + plane.dx * (x[k] - plane.x))) * weight[k]);
+    };
+    // Two independent maxima, so that one does not wait for the other.
+    DoubleVec one = hn::Zero(d);
+    DoubleVec two = one;
+    int k = 0;
+    for (; k + 2 * lanes <= count; k += 2 * lanes) {
+      one = hn::Max(one, errors(k));
+      two = hn::Max(two, errors(k + lanes));
+    }
+    for (; k < count; k += lanes) {
+      const auto is_in_row = hn::FirstN(d, static_cast<std::size_t>(count - k));
+      one = hn::Max(one, hn::IfThenElseZero(is_in_row, errors(k)));
+    }
+    const double row_worst = hn::GetLane(hn::MaxOfLanes(d, hn::Max(one, two)));
+    if (row_worst <= worst.geometric_error_m) continue;
+    for (k = 0; k + 1 < count && error(k) != row_worst;) ++k;
+    worst = {row_worst, static_cast<std::uint32_t>(first + static_cast<std::size_t>(k))};
+  }
+}
+
+}  // namespace
+}  // namespace lod::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lod {
+
+HWY_EXPORT(box_kernel);
+HWY_EXPORT(rows_kernel);
+
+WorstPost worst_in_box(const ScannedPosts& posts, const ScannedPlane& plane,
+                       const std::array<ScannedSide, 3>& sides, const ScannedBox& box) {
+  return HWY_DYNAMIC_DISPATCH(box_kernel)(posts, plane, sides, box);
+}
+
+void scan_rows(const ScannedPosts& posts, const ScannedPlane& plane, std::span<const ScannedRow> rows,
+               WorstPost& worst) {
+  HWY_DYNAMIC_DISPATCH(rows_kernel)(posts, plane, rows, worst);
+}
+
+}  // namespace lod
+#endif
