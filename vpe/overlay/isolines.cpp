@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <tuple>
 
 namespace vpe::overlay {
@@ -43,8 +44,16 @@ class Tracer {
       : terrain_(terrain), values_(values), options_(options) {}
 
   std::vector<Isoline> run() {
+    std::vector<double> here, next;
+    bands_of_row(0, next);
     for (int y = 0; y + 1 < terrain_.height(); ++y) {
-      for (int x = 0; x + 1 < terrain_.width(); ++x) cell(x, y);
+      std::swap(here, next);
+      bands_of_row(y + 1, next);
+      for (std::size_t x = 0; x + 1 < here.size(); ++x) {
+        // Most cells lie between two lines.
+        if (here[x] == here[x + 1] && here[x] == next[x] && here[x] == next[x + 1]) continue;
+        cell(static_cast<int>(x), y);
+      }
     }
     join();
     std::vector<Isoline> lines;
@@ -62,6 +71,21 @@ class Tracer {
   }
 
  private:
+  // Sets the multiple of the step below each value of a row; NaN where the value is NaN, or a multiple up to rounding.
+  void bands_of_row(int y, std::vector<double>& out) const {
+    constexpr double kRounding = 1e-12;
+    const double per_step = 1 / options_.step;
+    const double* const row = &values_[terrain_.index(0, y)];
+    out.resize(static_cast<std::size_t>(terrain_.width()));
+    for (std::size_t x = 0; x < out.size(); ++x) {
+      const double multiple = row[x] * per_step;
+      const double below = std::floor(multiple);
+      const double rest = multiple - below;
+      const double least = kRounding * (1 + std::abs(multiple));
+      out[x] = rest > least && rest < 1 - least ? below : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
   void cell(int x, int y) {
     const std::size_t p = terrain_.index(x, y);
     const auto down = static_cast<std::size_t>(terrain_.width());

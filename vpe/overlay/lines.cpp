@@ -10,6 +10,7 @@
 #include "vpe/overlay/isolines.h"
 #include "vpe/overlay/layer_functions.h"
 #include "vpe/overlay/number_format.h"
+#include "vpe/overlay/polyline.h"
 
 namespace vpe::overlay {
 
@@ -67,7 +68,7 @@ void draw_lines(LabelLayout& layout, const std::vector<Isoline>& lines, const Li
   const auto pass = [&](double width_px, const Ink& ink) {
     for (const Isoline& line : lines) {
       for_sections(line, layout, [&](std::span<const glm::dvec2> points, bool closed, double share) {
-        layout.canvas().line(points, closed, width_px, {ink.r, ink.g, ink.b, ink.a * share});
+        layout.canvas().line(simplified(points), closed, width_px, {ink.r, ink.g, ink.b, ink.a * share});
       });
     }
   };

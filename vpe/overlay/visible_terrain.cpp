@@ -13,6 +13,30 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kSky = std::numeric_limits<float>::infinity();
 
+// Computes atan2(y, x) in degrees of one place after the other: near the last place that had an arc tangent, from the
+// series of the angle between both, whose first term that is left out is below 1e-15.
+class AngleAlong {
+ public:
+  double deg(double y, double x) {
+    constexpr double kNear = 0.01;
+    const double tangent = (x_ * y - y_ * x) / (x_ * x + y_ * y);
+    if (!(std::abs(tangent) < kNear && x_ * x + y_ * y > 0)) {
+      x_ = x;
+      y_ = y;
+      angle_ = std::atan2(y, x);
+      return angle_ / mars::kRadiansPerDegree;
+    }
+    const double t2 = tangent * tangent;
+    double angle = angle_ + tangent * (1 - t2 * (1.0 / 3 - t2 * (1.0 / 5 - t2 / 7)));
+    if (angle > mars::kPi) angle -= 2 * mars::kPi;
+    if (angle <= -mars::kPi) angle += 2 * mars::kPi;
+    return angle / mars::kRadiansPerDegree;
+  }
+
+ private:
+  double x_ = 0, y_ = 0, angle_ = 0;
+};
+
 }  // namespace
 
 VisibleTerrain::VisibleTerrain(const Scene& scene)
@@ -103,7 +127,7 @@ bool VisibleTerrain::is_whole(int x, int y) const {
 }
 
 template <class Value>
-std::vector<double> VisibleTerrain::values(const Value& value) const {
+std::vector<double> VisibleTerrain::values(Value value) const {
   std::vector<double> out(scene_.range_m.size(), kNaN);
   for (int y = 0; y < size_.y; ++y) {
     for (int x = 0; x < size_.x; ++x) {
@@ -115,12 +139,12 @@ std::vector<double> VisibleTerrain::values(const Value& value) const {
 }
 
 std::vector<double> VisibleTerrain::longitudes_deg() const {
-  return values([](const glm::dvec3& p) { return std::atan2(p.y, p.x) / mars::kRadiansPerDegree; });
+  return values([along = AngleAlong()](const glm::dvec3& p) mutable { return along.deg(p.y, p.x); });
 }
 
 std::vector<double> VisibleTerrain::latitudes_deg() const {
-  return values([](const glm::dvec3& p) {
-    return std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y)) / mars::kRadiansPerDegree;
+  return values([along = AngleAlong()](const glm::dvec3& p) mutable {
+    return along.deg(p.z, std::sqrt(p.x * p.x + p.y * p.y));
   });
 }
 

@@ -48,7 +48,7 @@ class VisibleTerrain {
  private:
   bool breaks(std::size_t pixel, int x, int side, std::size_t step) const;
   template <class Value>
-  std::vector<double> values(const Value& value) const;
+  std::vector<double> values(Value value) const;
 
   const Scene& scene_;
   core::SubRectangle part_;

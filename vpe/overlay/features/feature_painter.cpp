@@ -7,6 +7,7 @@
 
 #include "mars/geodesy/sphere.h"
 #include "vpe/overlay/label_layout.h"
+#include "vpe/overlay/polyline.h"
 
 namespace vpe::overlay {
 namespace {
@@ -54,13 +55,10 @@ void FeaturePainter::run(Canvas& canvas, const DrapedRun& run, const mars::Featu
     shown *= kHiddenOpacity;
   }
   const double width = width_px(style, run.distance_m);
-  if (corner == glm::dvec2(0)) {
-    canvas.dashed(run.points_px, width, ink_of(*style.stroke, shown), lengths);
-    return;
-  }
-  std::vector<glm::dvec2> moved(run.points_px);
-  for (glm::dvec2& p : moved) p -= corner;
-  canvas.dashed(moved, width, ink_of(*style.stroke, shown), lengths);
+  // Before they are moved, so that all parts of an image draw the same line.
+  std::vector<glm::dvec2> points = simplified(run.points_px);
+  for (glm::dvec2& p : points) p -= corner;
+  canvas.dashed(points, width, ink_of(*style.stroke, shown), lengths);
 }
 
 void FeaturePainter::marker(Canvas& canvas, glm::dvec2 at_px, double distance_m,
