@@ -175,6 +175,10 @@ class TerrainShader {
   std::optional<glm::dvec3> nodata_image_at(const glm::dvec3& direction, double footprint_m,
                                             const ShadingParams& params, Cursor& cursor) const;
 
+  // Returns whether the sun is seen from a place on the ground whose posts are spacing_m apart: nothing of the reference
+  // surface lies between. Throws PlanetError.
+  bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const;
+
   // Return the inputs of colours: posts of a tile that the planet has, texels of one that image_key()
   // returned, stretched. Throw PlanetError.
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadingParams& params) const;
@@ -277,7 +281,6 @@ class TerrainShader {
                                      std::vector<glm::dvec3>& points) const;
   void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,
                    ShadedTile& out) const;
-  bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const;
 
   std::shared_ptr<const PlanetFile> planet_;
   ShaderBudgetShares shares_;

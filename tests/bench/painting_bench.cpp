@@ -6,7 +6,8 @@
 //
 // CAMERA and APPEARANCE select cases by a part of their name.
 //
-// Both sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians.
+// All sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians. "Bare" is
+// the painter's lit image of one colour, in the same rounds.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -93,7 +94,10 @@ int main(int argc, char** argv) {
       {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
       {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
       {"lit, image at posts", core::Mode::kColoured, core::Colour::kImage},
-      {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
+      {"unlit, image at posts", core::Mode::kUnlit, core::Colour::kImage},
+      {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat},
+      {"lit flat slope", core::Mode::kColoured, core::Colour::kSlope, 0, false, core::Shading::kFlat},
+      {"textured flat", core::Mode::kTextured, core::Colour::kNone, 0, false, core::Shading::kFlat}};
   const auto pixels =
       static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
   std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
@@ -116,15 +120,21 @@ int main(int argc, char** argv) {
     std::printf("%s (%.0f %% sky)\n", camera.name, 100 * sky / static_cast<double>(pixels));
     for (const AppearanceCase& appearance : appearances) {
       if (!wanted(appearance.name, 4)) continue;
+      request.settings = {};
+      core::DrawRequest bare_request = request;
+      bare_request.settings.mode = core::Mode::kLit;
       request.settings.mode = appearance.mode;
       request.settings.colour = appearance.colour;
       request.settings.colourise = appearance.colourise;
       request.settings.shading = appearance.shading;
       request.settings.haze_visibility_m = appearance.haze_m;
       std::vector<vpe::base::Rgb> a(pixels), b(pixels);
-      Times caches, ours, theirs;
+      Times caches, bare, ours, theirs;
+      std::vector<double> of_bare;
       for (int n = 0; n <= rounds; ++n) {
+        (n == 0 ? caches : bare).add([&] { painter.paint(bare_request, range_m, a, {}, pool); });
         (n == 0 ? caches : ours).add([&] { painter.paint(request, range_m, a, {}, pool); });
+        if (n > 0) of_bare.push_back(ours.cpu_ms.back() / bare.cpu_ms.back());
         (n == 0 ? caches : theirs).add([&] { b = by_point.paint(request, range_m, pool); });
       }
       std::size_t one = 0, two = 0;
@@ -136,11 +146,13 @@ int main(int argc, char** argv) {
       }
       const double per_pixel = 1e6 / static_cast<double>(pixels);
       std::printf(
-          "  %-22s %6.1f ms, %5.1f ns a pixel of one core; colour_at %7.1f ms, %6.1f ns, %5.1f x; "
-          "off %.4f %% / %.4f %%\n",
-          appearance.name, median(ours.wall_ms), median(ours.cpu_ms) * per_pixel, median(theirs.wall_ms),
-          median(theirs.cpu_ms) * per_pixel, median(theirs.cpu_ms) / median(ours.cpu_ms),
-          100e-6 * static_cast<double>(one) * per_pixel, 100e-6 * static_cast<double>(two) * per_pixel);
+          "  %-22s %6.1f ms, %5.1f ns a pixel of one core, %.2f of bare (%.2f..%.2f); colour_at %7.1f ms, %6.1f ns, "
+          "%5.1f x; off %.4f %% / %.4f %%\n",
+          appearance.name, median(ours.wall_ms), median(ours.cpu_ms) * per_pixel, median(of_bare),
+          *std::min_element(of_bare.begin(), of_bare.end()), *std::max_element(of_bare.begin(), of_bare.end()),
+          median(theirs.wall_ms), median(theirs.cpu_ms) * per_pixel,
+          median(theirs.cpu_ms) / median(ours.cpu_ms), 100e-6 * static_cast<double>(one) * per_pixel,
+          100e-6 * static_cast<double>(two) * per_pixel);
     }
   }
 }

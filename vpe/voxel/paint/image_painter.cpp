@@ -18,6 +18,9 @@ namespace {
 // Share of the budget that threads hold while they paint. The caches have the rest, most of it for what every
 // image uses again: heights are needed only when tiles are new.
 constexpr double kHeldShare = 0.15;
+// Of MadeTiles.
+constexpr double kMadeShare = 0.15;
+constexpr double kShaderShare = 1 - kHeldShare - kMadeShare;
 constexpr paging::ShaderBudgetShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
 
 // Rows that a thread takes at a time.
@@ -43,13 +46,11 @@ class HeldTiles {
   std::unordered_set<const void*> held_;
 };
 
-bool by_point(const paging::ShadingParams& shading) {
-  return shading.flat || shading.colour_source == paging::ColourSource::kImageAtPosts;
-}
+// Returns whether MadeTiles has a share in the image.
+bool needs_made(const PaintNeeds& needs) { return needs.facets || needs.post_colours; }
 
 bool is_one_colour(const paging::ShadingParams& shading, const paging::PlanetFile& planet) {
-  const PaintNeeds needs = paint_needs(shading);
-  if (by_point(shading) || needs.posts || needs.image) return false;
+  if (shading.lit || shading.colour_source != paging::ColourSource::kPlain) return false;
   for (int face = 0; face < mars::kFaces; ++face) {
     if (planet.has_nodata({static_cast<mars::Face>(face), 0, 0, 0})) return false;
   }
@@ -71,10 +72,12 @@ double root_range(const paging::PlanetFile& planet, const core::DrawRequest& req
 ImagePainter::ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
-      shader_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
+      shader_(planet_, share(kShaderShare, budget_bytes), kShares),
+      made_(share(kMadeShare, budget_bytes)) {}
 
 void ImagePainter::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
-  shader_.change_planet(planet, share(1 - kHeldShare, budget_));
+  shader_.change_planet(planet, share(kShaderShare, budget_));
+  made_.clear();
   planet_ = std::move(planet);
   failures_.clear();
 }
@@ -112,8 +115,8 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.focal_px = rays_per_radian(request);
   job.root_range_m = level_range_m(request, post_px);
   job.posts_side = planet_->meta().tile.posts();
-  job.by_point = by_point(shading_);
   job.one_colour = is_one_colour(shading_, *planet_);
+  if (!job.one_colour) job.needs = paint_needs(shading_);
   job.camera_radius_m = glm::length(request.view.camera.position_m);
   if (job.camera_radius_m > 0.0) job.up = request.view.camera.position_m / job.camera_radius_m;
   job.width = size.x;
@@ -123,7 +126,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.wanted = wanted.empty() ? nullptr : wanted.data();
   job.normals = normals.empty() ? nullptr : normals.data();
 
-  if (!job.by_point || reading == nullptr) return paint_bands(job, shading_, pool, reading);
+  if (!needs_made(job.needs) || reading == nullptr) return paint_bands(job, shading_, pool, reading);
   try {
     return paint_bands(job, shading_, pool, reading);
   } catch (const paging::PlanetError& e) {
@@ -133,7 +136,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   smooth.flat = false;
   if (smooth.colour_source == paging::ColourSource::kImageAtPosts)
     smooth.colour_source = paging::ColourSource::kImage;
-  job.by_point = false;
+  job.needs = paint_needs(smooth);
   job.shading = &smooth;
   return paint_bands(job, smooth, pool, reading);
 }
@@ -142,11 +145,12 @@ std::int64_t ImagePainter::paint_bands(const PaintJob& job, const paging::Shadin
                                        base::ThreadPool& pool, Reading* reading) {
   const auto bands = static_cast<std::size_t>((job.height + kBand - 1) / kBand);
   std::atomic<std::int64_t> nodata_count{0};
+  const bool by_rule = reading != nullptr && !needs_made(job.needs);
   PaintSources sources(*planet_, shader_, shading, failures_,
-                       reading != nullptr ? std::optional(reading->rule) : std::nullopt);
+                       by_rule ? std::optional(reading->rule) : std::nullopt);
   base::ObjectPool<PaintTiles> tiles_pool(
       [&] {
-        return std::make_unique<PaintTiles>(*planet_, sources, shading,
+        return std::make_unique<PaintTiles>(*planet_, shader_, sources, made_, shading,
                                             share(kHeldShare / pool.threads(), budget_));
       },
       {.discard_on_exception = true});
@@ -166,11 +170,12 @@ void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View
   // No tile depends on the scale of colours.
   const paging::ShadingParams shading =
       paging::shading_params(request.settings, request.sun, has_image, nullptr);
-  if (by_point(shading)) return;
-  constexpr double kPart = 0.5 * (1 - kHeldShare);
+  if (needs_made(paint_needs(shading))) return;
+  constexpr double kPart = 0.5 * kShaderShare;
   PaintSources sources(*planet_, shader_, shading, failures_,
                        reading != nullptr ? std::optional(reading->rule) : std::nullopt);
-  PaintTiles tiles(*planet_, sources, shading, budget_);
+  MadeTiles none(0);
+  PaintTiles tiles(*planet_, shader_, sources, none, shading, budget_);
   HeldTiles ground(share(kPart * kShares.normals, budget_));
   HeldTiles images(share(kPart * kShares.images, budget_));
   const double root_range_m = root_range(*planet_, request);
@@ -217,7 +222,7 @@ std::size_t ImagePainter::page_capacity(const PaintPage& page) const {
   const std::size_t texels = std::size_t{paging::kImageIntervals + 1} * (paging::kImageIntervals + 1);
   const std::size_t bytes =
       page.is_image ? texels * sizeof(base::Rgb) : side * side * (sizeof(paging::NormalTile::Post) + 1);
-  return share((1 - kHeldShare) * (page.is_image ? kShares.images : kShares.normals), budget_) / bytes;
+  return share(kShaderShare * (page.is_image ? kShares.images : kShares.normals), budget_) / bytes;
 }
 
 }  // namespace vpe::voxel

@@ -3,10 +3,9 @@
 //
 // Stage of the pipeline (vpe/voxel/ray_renderer.h): the one after RangeCaster. Bands of rows are handed to
 // threads. For each block of 32 pixels the kernel (paint_kernel.cpp) computes the places that the rays meet
-// (ray_rows.h, paint_block-inl.h), finds their posts and texels (paint_tiles.h, paint_ground-inl.h), shades
-// them (paint_shading-inl.h, scale_table.h), and adds haze and sky (paint_air-inl.h), in vectors of the
-// machine's instruction set. Flat shading and colour=image are left to paging::TerrainShader::colour_at, pixel
-// by pixel, which costs some 17 and 50 times as much (docs/measurements/rays.md).
+// (ray_rows.h, paint_block-inl.h), finds their posts and texels (paint_tiles.h, paint_ground-inl.h) or facets
+// (facet_tile.h, paint_facets-inl.h), shades them (paint_shading-inl.h, scale_table.h), and adds haze and sky
+// (paint_air-inl.h), in vectors of the machine's instruction set.
 //
 // Typical usage:
 //   ImagePainter painter(planet, memory_bytes);
@@ -24,6 +23,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
 #include "vpe/voxel/cast/pixel_normal.h"
+#include "vpe/voxel/paint/made_tiles.h"
 #include "vpe/voxel/paint/paint_sources.h"
 #include "vpe/voxel/paint/scale_table.h"
 
@@ -55,13 +55,13 @@ class ImagePainter {
   // for unreadable tiles, and std::runtime_error for an unreadable palette.
   //
   // With `reading`, coarser posts and texels take the place of those that are not there, and paging::PlanetError
-  // is thrown only where not even a root can be read. Ground that is coloured pixel by pixel (above) is read in
-  // any case; where that fails, it is coloured as if it were not. Without any absent page the colours are those
+  // is thrown only where not even a root can be read. The facets of flat shading and the image at posts are read in
+  // any case; where that fails, ground is coloured without them. Without any absent page the colours are those
   // without `reading`, to the bit.
   struct Reading {
     ReadingRule rule;
     std::vector<AbsentPage> absent = {};  // out
-    std::string failure_of_points = {};   // out: why ground could not be coloured pixel by pixel, or ""
+    std::string failure_of_points = {};   // out: why facets, or the image at posts, could not be had; or ""
   };
   //
   // Posts and texels are nominally at most post_px pixels wide. Smaller: sharper where the ground is seen at a grazing angle;
@@ -79,7 +79,8 @@ class ImagePainter {
 
   // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given
   // ranges. `downsampled` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and
-  // when the tiles of this image would fill more than half of the caches of their kind. Any thread may call it,
+  // when the tiles of this image would fill more than half of the caches of their kind. Reads neither facets nor the
+  // image at posts. Any thread may call it,
   // also while another one paints. Throws paging::PlanetError. With `reading` it finds what is absent instead.
   void read_ahead(const core::DrawRequest& request, const core::View& downsampled,
                   std::span<const float> range_m, const base::ThreadPool& pool,
@@ -91,7 +92,7 @@ class ImagePainter {
   // Returns how many pages such as this one the budget holds.
   std::size_t page_capacity(const PaintPage& page) const;
 
-  std::size_t bytes_resident() const { return shader_.bytes_resident(); }
+  std::size_t bytes_resident() const { return shader_.bytes_resident() + made_.bytes(); }
 
  private:
   void set_shading(const core::DrawRequest& request);
@@ -102,6 +103,7 @@ class ImagePainter {
   std::size_t budget_;
   mutable PaintFailures failures_;
   paging::TerrainShader shader_;
+  MadeTiles made_;
   paging::ShadingParams shading_;
   core::Appearance scale_of_;
   std::shared_ptr<const core::ColourScale> scale_;

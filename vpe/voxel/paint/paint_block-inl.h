@@ -30,6 +30,23 @@ struct alignas(64) Sources {
   float x[kBlock], y[kBlock];
 };
 
+// Holds where pixels lie in the grid of a tile of facets.
+struct alignas(64) FacetPlaces {
+  std::int32_t corner[kBlock];        // the south-west post of the cell
+  std::int32_t second[kBlock];        // from there to the facet's second post: 1 below the diagonal
+  float column[kBlock], row[kBlock];  // of the cell, from the lines FacetSquare::west and south
+  float x[kBlock], y[kBlock];         // in the cell, 0 to 1
+};
+
+// Holds which facets colour the pixels.
+struct Facets {
+  FacetPlaces places;
+  // The squares, and the pixels of each.
+  const FacetSquare* square[kBlock];
+  std::uint32_t pixels[kBlock];
+  int squares;
+};
+
 // Holds the pixels' values, an array for each kind. Arrays come first, as all of them are whole vectors.
 // Functions over a block are not inlined: inlining gains nothing, and compilers take minutes with sanitizers.
 struct alignas(64) Block {
@@ -43,8 +60,12 @@ struct alignas(64) Block {
   // Set by locate().
   Sources<float> posts;
   Sources<std::uint8_t> texels;
+  Sources<std::uint16_t> colours;
   float sun[kBlock];  // share of the sun that is visible; set with shadows only
-  // Set by take_posts(), take_texels() and take_scale().
+  // Set by locate_facets(), and with `middles` by take_facets().
+  Facets facets;
+  double middle[3][kBlock];
+  // Set by take_posts() or take_facets(), and by take_texels(), take_colours() and take_scale().
   float post[kBlock][4];
   float texel[kBlock][4];
   // Set by ray_angles(): cosines between the ray and the vertical of the camera, and the sun.
@@ -52,6 +73,7 @@ struct alignas(64) Block {
   double sunward[kBlock];
   float red[kBlock], green[kBlock], blue[kBlock];
 
+  const double* shown[3];  // the places whose colours are shown: `place`, or `middle`
   const RowRays* row;
   const double* c0;
   const double* c1;
@@ -115,6 +137,8 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.y = y;
   block.count = count;
   block.nodata = 0;
+  block.facets.squares = 0;
+  for (int c = 0; c < 3; ++c) block.shown[c] = block.place[c];
   const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
   // Whole blocks are read in place: loads from a copy would wait for its stores.
   const float* ranges = job.range_m + at;

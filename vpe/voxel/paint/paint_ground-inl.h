@@ -35,11 +35,11 @@ struct alignas(64) Fractions {
   float x[kBlock], y[kBlock];  // of a square's sides
 };
 
-// Sets chart coordinates on the tile's face, and coordinates outside any square for places on the other side of
+// Sets chart coordinates on the square's face, and coordinates outside any square for places on the other side of
 // the planet.
-inline HWY_NOINLINE void set_chart(const PaintTile& tile, const Block& block, Chart& chart) {
+inline HWY_NOINLINE void set_chart(const ChartSquare& tile, const Block& block, Chart& chart) {
   const Doubles d;
-  const double* const p[3] = {block.place[tile.axis[0]], block.place[tile.axis[1]], block.place[tile.axis[2]]};
+  const double* const p[3] = {block.shown[tile.axis[0]], block.shown[tile.axis[1]], block.shown[tile.axis[2]]};
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
     const auto out = hn::Mul(hn::Load(d, p[2] + i), hn::Set(d, tile.sign[2]));
     const auto before = hn::Gt(out, hn::Zero(d));
@@ -197,7 +197,7 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
     std::uint32_t here = tile == nullptr ? 0 : inside(*tile, block, chart, at) & left;
     if (here == 0) {
       const int i = __builtin_ctz(left);
-      tile = &tiles.find({block.place[0][i], block.place[1][i], block.place[2][i]}, block.level[i]);
+      tile = &tiles.find({block.shown[0][i], block.shown[1][i], block.shown[2][i]}, block.level[i]);
       if (charted != static_cast<int>(tile->face)) set_chart(*tile, block, chart);
       charted = static_cast<int>(tile->face);
       // The pixel that the square was found for belongs to it, even if rounding puts it just outside.
@@ -213,6 +213,9 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
     if (tile->image)
       find_sources(at, tile->image_x, tile->image_y, &tile->image->texels.data()->r, kTexels, 3, here,
                    block.texels);
+    if (tile->colours)
+      find_sources(at, tile->ground_x, tile->ground_y, tile->colours->texels.data(), tile->colours->side, 4,
+                   here, block.colours);
   }
 }
 
@@ -231,31 +234,32 @@ inline HWY_NOINLINE void take_normals(const PaintJob& job, Block& block) {
   }
 }
 
-// Colours the block's ground. Requires locate().
-inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
-  const PaintNeeds needs = paint_needs(*job.shading);
-  if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
-  if (needs.posts && job.normals != nullptr) take_normals(job, block);
-  if (needs.image) take_texels(block);
-  paint_shading(job, block);
-}
-
-// Colours the block's ground by TerrainShader::colour_at, pixel by pixel; nodata ground by nodata_image_at.
-inline void paint_by_point(const PaintJob& job, PaintTiles& tiles, Block& block) {
-  for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
+// Sets `texel` of the block's ground to the image's colours between posts; of nodata ground to those at the place.
+inline HWY_NOINLINE void take_colours(const PaintJob& job, PaintTiles& tiles, Block& block) {
+  const Fours d;
+  const hn::Rebind<std::int32_t, Fours> di;
+  const hn::Rebind<std::uint16_t, Fours> du;
+  const auto unit = hn::Set(d, 1.0F / PostColours::kPerUnit);
+  const auto colour = [&](const std::uint16_t* at)
+                          HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du, at))); };
+  const std::size_t step = 4 * static_cast<std::size_t>(job.posts_side);
+  for (std::uint32_t left = block.ground & ~block.nodata; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const std::uint16_t* const south = block.colours.at[i];
+    const std::uint16_t* const north = south + step;
+    for (std::size_t c = 0; c < 4; c += hn::Lanes(d))
+      hn::Store(hn::Mul(unit, between(d, colour(south + c), colour(south + 4 + c), colour(north + c),
+                                      colour(north + 4 + c), block.colours.x[i], block.colours.y[i])),
+                d, block.texel[i] + c);
+  }
+  for (std::uint32_t left = block.nodata; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     const glm::dvec3 place =
         glm::normalize(glm::dvec3(block.place[0][i], block.place[1][i], block.place[2][i]));
     const double footprint_m = static_cast<double>(block.range[i]) / job.focal_px;
-    auto colour = job.shader->colour_at(place, footprint_m, *job.shading, tiles.cursor);
-    if (!colour) {
-      block.nodata |= std::uint32_t{1} << i;
-      colour = job.shader->nodata_image_at(place, footprint_m, *job.shading, tiles.cursor);
-    }
-    const glm::vec3 rgb = colour ? glm::vec3(*colour) : glm::vec3(0);
-    block.red[i] = rgb.x;
-    block.green[i] = rgb.y;
-    block.blue[i] = rgb.z;
+    const glm::dvec3 image =
+        job.shader->nodata_image_at(place, footprint_m, *job.shading, tiles.cursor).value();
+    for (int c = 0; c < 3; ++c) block.texel[i][c] = static_cast<float>(image[c]);
   }
 }
 

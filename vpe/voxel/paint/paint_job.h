@@ -27,7 +27,7 @@ struct PaintJob {
   double focal_px = 0;      // rays per radian
   double root_range_m = 0;  // at this range pixels are as wide as the posts of level 0 are apart
   int posts_side = 0;       // lines of a tile's grid
-  bool by_point = false;    // TerrainShader::colour_at colours the ground
+  PaintNeeds needs;         // none with one_colour
   bool one_colour = false;  // all ground has one colour and data: no tile is needed
   glm::dvec3 up{0, 0, 1};   // at the camera
   double camera_radius_m = 0;

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "vpe/voxel/paint/paint_air-inl.h"
+#include "vpe/voxel/paint/paint_facets-inl.h"
 #include "vpe/voxel/paint/paint_ground-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,10 +50,44 @@ inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int c
   }
 }
 
-HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& tile, int x, int y,
-                      Block& block) {
+// Holds the squares that a row's blocks used last; null: none.
+struct LastSquares {
+  const PaintTile* tile = nullptr;
+  const FacetSquare* facets = nullptr;
+};
+
+// Where facets need texels they are found when the facets are known, at their middles.
+inline bool takes_texels_of_facets(const PaintJob& job) { return job.needs.facets && job.needs.image; }
+
+HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, LastSquares& last, int x, int y, Block& block) {
   begin_block(job, tiles.max_level(), x, y, std::min(kBlock, job.width - x), block);
-  if (block.ground != 0 && !job.by_point && !job.one_colour) locate(tiles, tile, block);
+  if (block.ground == 0 || job.one_colour) return;
+  if (job.needs.facets) {
+    locate_facets(tiles, last.facets, block);
+  } else {
+    locate(tiles, last.tile, block);
+  }
+}
+
+// Does what is between begin() and finish() where facets take texels.
+HWY_INLINE void take_texels_of_facets(const PaintJob& job, PaintTiles& tiles, LastSquares& last, Block& block) {
+  if (block.ground == 0) return;
+  take_facets(job, true, block);
+  locate(tiles, last.tile, block);
+}
+
+// Colours the block's ground.
+inline HWY_NOINLINE void paint_ground(const PaintJob& job, PaintTiles& tiles, Block& block) {
+  const PaintNeeds& needs = job.needs;
+  const auto takes_place = [](paging::ColourSource s) {
+    return s == paging::ColourSource::kSlope || s == paging::ColourSource::kAspect;
+  };
+  if (needs.facets && !needs.image) take_facets(job, takes_place(job.shading->colour_source), block);
+  if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
+  if (needs.posts && job.normals != nullptr) take_normals(job, block);
+  if (needs.image) take_texels(block);
+  if (needs.post_colours) take_colours(job, tiles, block);
+  paint_shading(job, block);
 }
 
 // Paints nodata ground: the image in stripes, or else in their mean. Requires colours of the ground.
@@ -65,24 +100,18 @@ inline HWY_NOINLINE void paint_nodata(const PaintJob& job, Block& block) {
       continue;
     }
     const float tone = nodata_tone(job, block.x + i, block.y);
-    // Without light and hue. paint_by_point() has left them out.
+    // Without light and hue.
     const float* const image = block.texel[i];
-    block.red[i] = tone * (job.by_point ? block.red[i] : image[0]);
-    block.green[i] = tone * (job.by_point ? block.green[i] : image[1]);
-    block.blue[i] = tone * (job.by_point ? block.blue[i] : image[2]);
+    block.red[i] = tone * image[0];
+    block.green[i] = tone * image[1];
+    block.blue[i] = tone * image[2];
   }
 }
 
 // Returns the number of nodata pixels.
 HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
   const core::SettingsValues& settings = job.request->settings;
-  if (block.ground != 0) {
-    if (job.by_point) {
-      paint_by_point(job, tiles, block);
-    } else {
-      paint_ground(job, block);
-    }
-  }
+  if (block.ground != 0) paint_ground(job, tiles, block);
   if (block.nodata != 0) paint_nodata(job, block);
   const bool hazy = settings.haze_visibility_m > 0.0 && block.ground != 0;
   const bool sky = settings.background == core::Background::kSky && block.sky != 0;
@@ -104,19 +133,25 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
 
 std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {
   std::int64_t nodata_count = 0;
-  const PaintTile* tile = nullptr;
-  // Two blocks overlap, so that the memory of the later one arrives while the earlier one is finished.
-  Block blocks[2];
+  LastSquares last;
+  // Blocks overlap, so that the memory of the later one arrives while the earlier one is finished.
+  Block blocks[3];
+  const int steps = takes_texels_of_facets(job) ? 3 : 2;
   for (int y = first_row; y < end_row; ++y) {
-    if (tiles.trim()) tile = nullptr;
+    if (tiles.trim()) last = {};
     int n = 0;
+    const auto go_on = [&](int finished) {
+      if (steps == 3 && n >= 1 && n - 1 > finished)
+        take_texels_of_facets(job, tiles, last, blocks[(n - 1) % steps]);
+      if (finished >= 0) nodata_count += finish(job, tiles, blocks[finished % steps]);
+    };
     for (int x = 0; x < job.width; x += kBlock) {
       if (job.wanted != nullptr && wanted_bits(job, x, y) == 0) continue;
-      begin(job, tiles, tile, x, y, blocks[n & 1]);
-      if (n > 0) nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
+      begin(job, tiles, last, x, y, blocks[n % steps]);
+      go_on(n - steps + 1);
       ++n;
     }
-    if (n > 0) nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
+    for (int left = steps - 1; left > 0; --left) go_on(n - left);
   }
   return nodata_count;
 }

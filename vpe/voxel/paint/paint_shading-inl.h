@@ -110,19 +110,19 @@ HWY_INLINE V shown_value(D d, const PaintJob& job, paging::ColourSource what, co
   alignas(64) float place[3][kBlock];
   for (int c = 0; c < 3; ++c) {
     for (int k = 0; k < static_cast<int>(hn::Lanes(d)); k += static_cast<int>(hn::Lanes(dd)))
-      hn::Store(hn::DemoteTo(dh, hn::Load(dd, block.place[c] + i + k)), dh, place[c] + k);
+      hn::Store(hn::DemoteTo(dh, hn::Load(dd, block.shown[c] + i + k)), dh, place[c] + k);
   }
   const Triple<V> p{hn::Load(d, place[0]), hn::Load(d, place[1]), hn::Load(d, place[2])};
   if (what == paging::ColourSource::kSlope) return slope(d, normal, p);
   return aspect(d, normal, p, job.scale->undefined_value);
 }
 
-// Colours the whole block, after take_posts() and take_texels().
+// Colours the whole block, after take_posts() or take_facets(), and take_texels() or take_colours().
 inline HWY_NOINLINE void paint_shading(const PaintJob& job, Block& block) {
   const paging::ShadingParams& shading = *job.shading;
-  const bool of_image = shading.colour_source == paging::ColourSource::kImage;
+  const bool of_image = paging::shows_image(shading.colour_source);
   const bool scaled = job.scale != nullptr;
-  const bool posts = paint_needs(shading).posts;
+  const bool posts = job.needs.posts || job.needs.facets;
   const Floats d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   alignas(64) float light[kBlock];
