@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +15,16 @@ void check_complete(const Framebuffer& framebuffer) {
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error("OpenGL: framebuffer is not complete (" + std::to_string(status) + ")");
   }
+}
+
+constexpr std::size_t kRgbaBytes = 4;
+
+// Each pixel is written with the alpha that follows it, which the next one covers.
+void drop_alpha(const std::uint8_t* rgba, std::size_t count, base::Rgb* out) {
+  static_assert(sizeof(base::Rgb) == 3);
+  auto* to = reinterpret_cast<std::uint8_t*>(out);
+  for (std::size_t x = 0; x + 1 < count; ++x) std::memcpy(to + 3 * x, rgba + kRgbaBytes * x, kRgbaBytes);
+  std::memcpy(to + 3 * (count - 1), rgba + kRgbaBytes * (count - 1), 3);
 }
 
 template <typename T>
@@ -73,21 +83,21 @@ void Target::read_colour(std::vector<base::Rgb>& out) const {
   }
   glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolve_.name() : draw_.name());
   out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  static_assert(sizeof(base::Rgb) == 3);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, out.data());
+  // As they are stored: a driver without a GPU takes three times as long to leave out alpha.
+  read_.resize(kRgbaBytes * out.size());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, read_.data());
   check_gl("read the image");
-  flip_rows(out, width_, height_);
+  const auto width = static_cast<std::size_t>(width_);
+  const auto height = static_cast<std::size_t>(height_);
+  for (std::size_t y = 0; y < height; ++y)
+    drop_alpha(&read_[kRgbaBytes * width * (height - 1 - y)], width, &out[y * width]);
 }
 
 double Target::mean_alpha() const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolve_.name() : draw_.name());
-  std::vector<std::uint8_t> alpha(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_ALPHA, GL_UNSIGNED_BYTE, alpha.data());
-  check_gl("read which pixels have data");
-  const auto sum = std::accumulate(alpha.begin(), alpha.end(), std::int64_t{0});
-  return static_cast<double>(sum) / (255.0 * static_cast<double>(alpha.size()));
+  std::int64_t sum = 0;
+  for (std::size_t k = kRgbaBytes - 1; k < read_.size(); k += kRgbaBytes) sum += read_[k];
+  return static_cast<double>(sum) / (255.0 * static_cast<double>(read_.size() / kRgbaBytes));
 }
 
 void Target::read_depth(std::vector<float>& out) const {

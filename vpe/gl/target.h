@@ -1,6 +1,7 @@
 // Offscreen render target.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vpe/base/rgb.h"
@@ -47,6 +48,7 @@ class Target {
   Renderbuffer depth_;
   Framebuffer resolve_;  // with multisampling
   Renderbuffer resolved_colour_;
+  mutable std::vector<std::uint8_t> read_;  // by read_colour(), with alpha, the bottom row first
 };
 
 }  // namespace vpe::gl

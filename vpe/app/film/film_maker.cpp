@@ -1,23 +1,18 @@
 #include "vpe/app/film/film_maker.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <deque>
-#include <exception>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "paging/planet/planet_user.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/film/frame_sink.h"
 #include "vpe/app/picture/contour_ranges.h"
 
 namespace vpe::app {
 
 namespace {
 
-constexpr std::size_t kWaitingFrames = 3;
 constexpr const char* kIncomplete = "-incomplete";
 // Single rays are slower than whole images, so that a frame which is carried to a smaller share takes longer.
 constexpr double kMostDrawnShare = 0.25;
@@ -27,88 +22,6 @@ bool all_done(std::span<const FilmFrame> frames) {
 }
 
 }  // namespace
-
-// Runs jobs in order on a thread of its own, so that encoding runs beside drawing. At most `depth` jobs wait.
-// An exception of a job comes out of the next push() or of finish().
-class FrameSink {
- public:
-  using Job = std::function<void()>;
-  explicit FrameSink(std::size_t depth);
-  ~FrameSink();  // drops waiting jobs
-  FrameSink(const FrameSink&) = delete;
-  FrameSink& operator=(const FrameSink&) = delete;
-
-  void push(Job job);
-  void finish();  // waits until all jobs are done
-
- private:
-  void run();
-  void throw_if_failed();
-
-  std::size_t depth_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Job> waiting_;
-  bool closed_ = false;
-  std::exception_ptr error_;
-  std::thread thread_;
-};
-
-FrameSink::FrameSink(std::size_t depth) : depth_(depth), thread_([this] { run(); }) {}
-
-FrameSink::~FrameSink() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-    waiting_.clear();
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
-}
-
-void FrameSink::push(Job job) {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_.size() < depth_ || error_; });
-  throw_if_failed();
-  waiting_.push_back(std::move(job));
-  changed_.notify_all();
-}
-
-void FrameSink::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
-  throw_if_failed();
-}
-
-void FrameSink::throw_if_failed() {
-  if (error_) std::rethrow_exception(error_);
-}
-
-void FrameSink::run() {
-  for (;;) {
-    Job job;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return !waiting_.empty() || closed_; });
-      if (waiting_.empty()) return;
-      job = std::move(waiting_.front());
-      waiting_.pop_front();
-    }
-    changed_.notify_all();
-    try {
-      job();
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      error_ = std::current_exception();
-      changed_.notify_all();
-      return;
-    }
-  }
-}
 
 FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
                      const RenderOptions& options, Makers makers, FrameOverlays& overlays)
@@ -121,7 +34,7 @@ FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFra
       overlays_(overlays) {}
 
 void FilmMaker::run(FilmReports& reports, ProgressLine& line) {
-  FrameSink sink(kWaitingFrames);
+  FrameSink sink;
   reports_ = &reports;
   line_ = &line;
   sink_ = &sink;
@@ -157,6 +70,16 @@ void FilmMaker::make_group(std::size_t begin, std::size_t end) {
   } else {
     sink_->push([this] { target_.abandon(); });
   }
+}
+
+std::size_t FilmMaker::bytes_of(const std::vector<DrawnEye>& eyes) {
+  const auto bytes = [](const core::Frame& frame) {
+    return frame.colour.size() * sizeof(base::Rgb) + frame.range_m.size() * sizeof(float);
+  };
+  std::size_t sum = 0;
+  for (const DrawnEye& eye : eyes)
+    sum += bytes(eye.result.frame) + (eye.contours ? bytes(eye.contours->frame) : 0);
+  return sum;
 }
 
 core::Renderer& FilmMaker::renderer_for(core::Backend backend) {
@@ -295,10 +218,12 @@ bool FilmMaker::draw(std::size_t n) {
   });
   if (!is_whole) frame.fingerprint += kIncomplete;
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
-  sink_->push([this, group, &frame, eyes, stereo = planned.stereo, planet = planet_] {
-    if (planet) overlays_.change_planet(planet);
-    target_.add(group, frame, finish(*eyes, stereo, frame.time_s));
-  });
+  sink_->push(
+      [this, group, &frame, eyes, stereo = planned.stereo, planet = planet_] {
+        if (planet) overlays_.change_planet(planet);
+        target_.add(group, frame, finish(*eyes, stereo, frame.time_s));
+      },
+      bytes_of(*eyes));
   return true;
 }
 

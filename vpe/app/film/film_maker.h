@@ -63,6 +63,7 @@ class FilmMaker {
     core::DrawResult result;
     std::optional<core::DrawResult> contours;
   };
+  static std::size_t bytes_of(const std::vector<DrawnEye>& eyes);
   core::Renderer& renderer_for(core::Backend backend);
   std::vector<DrawnEye> draw_eyes(std::size_t n, const PlannedFrame& planned, core::Renderer& renderer);
   core::DrawResult keep_failures(core::DrawResult result);

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "vpe/app/film/planar_420.h"
+
 namespace vpe::app {
 
 namespace fs = std::filesystem;
@@ -38,21 +40,17 @@ Words timescale(const VideoFormat& format) {
 
 Words input_words(const VideoFormat& format) {
   return {"-f",         "rawvideo",
-          "-pix_fmt",   "rgb24",
+          "-pix_fmt",   "yuv420p",
           "-s",         std::to_string(format.width) + "x" + std::to_string(format.height),
           "-framerate", scripts::to_text(format.rate)};
 }
 
-// Colours are those of BT.709 within the limits of television, and the file says so: players take untagged HD for
-// that, whatever matrix made it.
+// The file says what to_planar_420() has made: players take untagged HD for that, whatever matrix made it.
 Words encoder_words(const VideoFormat& format) {
-  Words words{"-vf",
-              "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+full_chroma_inp,"
-              "format=yuv420p"};
-  append(words,
-         {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"});
-  append(words, {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-threads", "4", "-x264-params",
-                 "open-gop=0"});
+  Words words{"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"};
+  // As like the frames as veryfast in 0.6 of its time; files are a seventh larger (docs/measurements/films.md).
+  append(words, {"-c:v", "libx264", "-preset", "superfast", "-crf", "18", "-threads", "4", "-x264-params",
+                 "open-gop=0:mbtree=1:rc-lookahead=10"});
   return append(words, timescale(format));
 }
 
@@ -145,8 +143,8 @@ void VideoWriter::fail(const std::string& what) {
 }
 
 void VideoWriter::add(const core::Frame& frame) {
-  const auto* data = reinterpret_cast<const std::uint8_t*>(frame.colour.data());
-  if (!ffmpeg_.write({data, frame.colour.size() * sizeof(base::Rgb)})) fail("cannot write the video");
+  to_planar_420(frame.colour, frame.width, frame.height, planes_);
+  if (!ffmpeg_.write(planes_)) fail("cannot write the video");
 }
 
 void VideoWriter::close() {

@@ -1,6 +1,7 @@
 // Video files by ffmpeg: short segments, joined without encoding them again.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -54,6 +55,7 @@ class VideoWriter {
 
   base::OutputFile file_;
   Subprocess ffmpeg_;
+  std::vector<std::uint8_t> planes_;  // of the last frame
 };
 
 struct VideoSegment {
