@@ -8,6 +8,7 @@
 
 #include "mars/geodesy/pose.h"
 #include "vpe/report/error_time_page.h"
+#include "vpe/report/resampling.h"
 
 namespace vpe::report {
 namespace {
@@ -278,11 +279,13 @@ TEST_F(ErrorTime, ImagesMayBeComposed) {
   halves.requests.push_back(halves.requests.front());
   halves.requests[0].view.part = {0, 0, 40, 15};
   halves.requests[1].view.part = {0, 15, 40, 15};
-  halves.compose = [](std::vector<core::Frame> frames) {
-    core::Frame whole = std::move(frames[0]);
+  halves.compose = [](std::size_t count, const NextFrame& next) {
+    EXPECT_EQ(count, 2U);
+    core::Frame whole = next();
+    const core::Frame below = next();
     whole.height = 30;
-    whole.colour.insert(whole.colour.end(), frames[1].colour.begin(), frames[1].colour.end());
-    whole.range_m.insert(whole.range_m.end(), frames[1].range_m.begin(), frames[1].range_m.end());
+    whole.colour.insert(whole.colour.end(), below.colour.begin(), below.colour.end());
+    whole.range_m.insert(whole.range_m.end(), below.range_m.begin(), below.range_m.end());
     return whole;
   };
   all.configurations.push_back(halves);
@@ -292,6 +295,52 @@ TEST_F(ErrorTime, ImagesMayBeComposed) {
   EXPECT_NEAR(result.measured[4].timing.median_s(), 1, 1e-9);
   all.configurations.back().compose = {};
   EXPECT_THROW(measure(all, options_), std::invalid_argument);
+  all.configurations.back().compose = [](std::size_t, const NextFrame& next) { return next(); };
+  EXPECT_THROW(measure(all, options_), std::invalid_argument);
+}
+
+// So that images of many strips need the memory of one: a strip is drawn when the one before was averaged.
+TEST_F(ErrorTime, StripsAreDrawnOneByOne) {
+  constexpr int kFactor = 64;
+  core::DrawRequest request;
+  request.view = view_down();
+  request.settings.lod_tolerance_px = 2;
+  const std::vector<core::DrawRequest> strips = enlarged(request, kFactor);
+  ASSERT_GE(strips.size(), 3U);
+  int bottom = 0;
+  for (const core::DrawRequest& strip : strips) {
+    const core::SubRectangle& part = strip.view.part;
+    EXPECT_EQ(part.y, bottom);
+    EXPECT_EQ(part.height % kFactor, 0);
+    EXPECT_LE(part.height, kMostStripRows);
+    EXPECT_LE(std::int64_t{part.width} * part.height, kMostStripPixels);
+    bottom += part.height;
+  }
+  EXPECT_EQ(bottom, kFactor * request.view.height);
+
+  std::size_t drawn = 0;
+  const core::Frame mean = average(request.view, kFactor)(strips.size(), [&] {
+    const glm::ivec2 size = core::drawn_size(strips.at(drawn).view);
+    core::Frame frame = blank_frame(size);
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x)
+        frame.colour[static_cast<std::size_t>(y * size.x + x)] = {
+            static_cast<std::uint8_t>(x / kFactor), static_cast<std::uint8_t>(10 * drawn),
+            static_cast<std::uint8_t>(x % 2 == 0 ? 0 : 100)};
+    ++drawn;
+    return frame;
+  });
+  EXPECT_EQ(drawn, strips.size());
+  ASSERT_EQ(mean.colour.size(), static_cast<std::size_t>(request.view.width * request.view.height));
+  for (int y = 0; y < request.view.height; ++y) {
+    const auto strip = static_cast<std::size_t>(y * kFactor / strips.front().view.part.height);
+    for (int x = 0; x < request.view.width; ++x) {
+      const base::Rgb& c = mean.colour[static_cast<std::size_t>(y * request.view.width + x)];
+      EXPECT_EQ(c.r, x);
+      EXPECT_EQ(c.g, 10 * strip);
+      EXPECT_EQ(c.b, 50);
+    }
+  }
 }
 
 TEST_F(ErrorTime, RefusesSubjectsThatCannotBeMeasured) {

@@ -6,11 +6,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "vpe/base/heap.h"
+
 namespace vpe::report {
 
 namespace {
-
-using Results = std::vector<core::DrawResult>;
 
 // Configurations that take no longer are drawn once more before they are timed. That restores what others
 // displaced from caches and memory, also pages that no statistics count.
@@ -21,25 +21,36 @@ double share_of(std::size_t renderers) {
   return 1.0 / static_cast<double>(std::max<std::size_t>(1, renderers));
 }
 
-Results draw_all(core::Renderer& renderer, const std::vector<core::DrawRequest>& requests, bool want_range) {
-  Results results;
-  for (core::DrawRequest request : requests) {
-    request.want_range = want_range;
-    results.push_back(renderer.draw(request));
-    if (!results.back().missing.empty()) {
-      throw std::runtime_error("an image to be measured lacks " + results.back().missing.front().tile + ": " +
-                               results.back().missing.front().why);
-    }
-  }
-  return results;
-}
+// An image of one or several requests.
+struct Composition {
+  const std::vector<core::DrawRequest>& requests;
+  const Compose& compose;
+  bool has_ranges;
+};
 
-core::Frame composed(const Compose& compose, Results& results, const core::View& view) {
-  std::vector<core::Frame> frames;
-  for (core::DrawResult& result : results) frames.push_back(std::move(result.frame));
-  if (!compose && frames.size() != 1)
+// Draws an image of the view. Passes each request and its result on before the frame is joined to the others.
+core::Frame draw_composed(
+    core::Renderer& renderer, const Composition& image, const core::View& view,
+    const std::function<void(const core::DrawRequest&, const core::DrawResult&)>& see = {}) {
+  std::size_t drawn = 0;
+  const auto next = [&] {
+    core::DrawRequest request = image.requests.at(drawn++);
+    request.want_range = image.has_ranges;
+    core::DrawResult result = renderer.draw(request);
+    if (!result.missing.empty()) {
+      throw std::runtime_error("an image to be measured lacks " + result.missing.front().tile + ": " +
+                               result.missing.front().why);
+    }
+    if (see) see(request, result);
+    return std::move(result.frame);
+  };
+  const std::size_t count = image.requests.size();
+  if (!image.compose && count != 1)
     throw std::invalid_argument("measure: several images and no function to join them");
-  core::Frame frame = compose ? compose(std::move(frames)) : std::move(frames.front());
+  core::Frame frame = image.compose ? image.compose(count, next) : next();
+  if (drawn != count)
+    throw std::invalid_argument("measure: " + std::to_string(drawn) + " of " + std::to_string(count) +
+                                " images were joined");
   const glm::ivec2 size = core::drawn_size(view);
   if (frame.width != size.x || frame.height != size.y) {
     throw std::invalid_argument("measure: an image of " + std::to_string(frame.width) + "x" +
@@ -47,6 +58,15 @@ core::Frame composed(const Compose& compose, Results& results, const core::View&
                                 "x" + std::to_string(size.y));
   }
   return frame;
+}
+
+// The same by a renderer of its own, which is gone when the image is returned.
+core::Frame draw_alone(const std::string& name, const Composition& image, const core::View& view,
+                       const ErrorTimeOptions& options,
+                       const std::function<void(const core::DrawRequest&, const core::DrawResult&)>& see = {}) {
+  base::return_freed_memory();
+  const std::unique_ptr<core::Renderer> renderer = options.make(name, 1.0);
+  return draw_composed(*renderer, image, view, see);
 }
 
 // Returns the shift that the range image's own error can add.
@@ -79,10 +99,11 @@ void count(const core::DrawRequest& request, const core::DrawResult& result, Mea
 Measured measure_errors(const Configuration& configuration, const core::View& view, const core::Frame& truth,
                         const ErrorTimeOptions& options) {
   Measured measured;
-  const std::unique_ptr<core::Renderer> renderer = options.make(configuration.renderer, 1.0);
-  Results results = draw_all(*renderer, configuration.requests, configuration.has_ranges);
-  for (std::size_t k = 0; k < results.size(); ++k) count(configuration.requests[k], results[k], measured);
-  const core::Frame frame = composed(configuration.compose, results, view);
+  const core::Frame frame = draw_alone(
+      configuration.renderer, {configuration.requests, configuration.compose, configuration.has_ranges}, view,
+      options, [&](const core::DrawRequest& request, const core::DrawResult& result) {
+        count(request, result, measured);
+      });
   if (configuration.has_colours) {
     measured.colour_rms = core::colour_rms(frame.colour, truth.colour);
     measured.similarity = core::structural_similarity(frame.colour, truth.colour, frame.width, frame.height);
@@ -103,6 +124,7 @@ void measure_times(const Subject& subject, const ErrorTimeOptions& options, std:
                    const std::function<void(const std::string&)>& step) {
   std::set<std::string> names;
   for (const Configuration& configuration : subject.configurations) names.insert(configuration.renderer);
+  base::return_freed_memory();
   std::map<std::string, std::unique_ptr<core::Renderer>> renderers;
   for (const std::string& name : names) renderers[name] = options.make(name, share_of(names.size()));
   const auto draw = [&](const Configuration& configuration) {
@@ -166,9 +188,9 @@ SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
   std::vector<core::Frame> truths;
   for (const Reference& reference : subject.references) {
     step("reference", 1);
-    const std::unique_ptr<core::Renderer> renderer = options.make(reference.renderer, 1.0);
-    Results results = draw_all(*renderer, reference.requests, reference.has_ranges);
-    truths.push_back(composed(reference.compose, results, reference.view));
+    truths.push_back(draw_alone(reference.renderer,
+                                {reference.requests, reference.compose, reference.has_ranges}, reference.view,
+                                options));
   }
   SubjectResult result{subject, {}};
   for (const Configuration& configuration : subject.configurations) {

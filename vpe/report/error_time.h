@@ -27,8 +27,11 @@ enum class ErrorKind : std::uint8_t {
   kColour,  // root mean square, steps of 8-bit sRGB
 };
 
-// Joins the frames of several requests to one image of the reference's size.
-using Compose = std::function<core::Frame(std::vector<core::Frame> frames)>;
+// Draws the next of several requests, in their order.
+using NextFrame = std::function<core::Frame()>;
+// Joins the frames of `count` requests to one image of the reference's size. Must ask for each of them. A frame is drawn when
+// it is asked for, so that images of any size can be joined piece by piece.
+using Compose = std::function<core::Frame(std::size_t count, const NextFrame& next)>;
 
 struct Configuration {
   std::string sweep;        // such as "triangles by tolerance"
@@ -118,6 +121,9 @@ struct ErrorTimeOptions {
 // it draws an untimed one if the configuration is quick, or if it has to reload data that others displaced.
 // Throws what renderers throw; std::invalid_argument for a subject without configurations, and for images whose
 // size is not their reference's; std::runtime_error for an incomplete image.
+//
+// Memory: it holds the references, one frame (with what Compose keeps of earlier ones), and one renderer of the whole share,
+// while times are measured one of each name. Before a renderer is made it returns freed memory to the system.
 //
 // Typical usage:
 //   ErrorTimeReport report{"Error against time", {}, {}};

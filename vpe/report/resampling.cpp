@@ -7,12 +7,6 @@
 
 namespace vpe::report {
 
-namespace {
-
-constexpr int kStripRows = 720;
-
-}  // namespace
-
 core::Frame blank_frame(const glm::ivec2& size) {
   core::Frame frame;
   frame.width = size.x;
@@ -26,9 +20,10 @@ std::vector<core::DrawRequest> enlarged(const core::DrawRequest& request, int fa
   core::DrawRequest large = request;
   large.view.width *= factor;
   large.view.height *= factor;
-  if (large.view.height <= kStripRows) return {large};
+  const int most = std::min(kMostStripRows, kMostStripPixels / large.view.width);
+  const int rows = std::max(1, most / factor) * factor;
+  if (large.view.height <= rows) return {large};
   std::vector<core::DrawRequest> strips;
-  const int rows = kStripRows / factor * factor;
   for (int y = 0; y < large.view.height; y += rows) {
     strips.push_back(large);
     strips.back().view.part = {0, y, large.view.width, std::min(rows, large.view.height - y)};
@@ -37,11 +32,12 @@ std::vector<core::DrawRequest> enlarged(const core::DrawRequest& request, int fa
 }
 
 Compose average(const core::View& view, int factor) {
-  return [size = glm::ivec2(view.width, view.height), factor](std::vector<core::Frame> frames) {
+  return [size = glm::ivec2(view.width, view.height), factor](std::size_t strips, const NextFrame& next) {
     core::Frame small = blank_frame(size);
     const int count = factor * factor;
     int top = 0;
-    for (const core::Frame& frame : frames) {
+    for (std::size_t k = 0; k < strips; ++k) {
+      const core::Frame frame = next();
       for (int y = 0; y < frame.height / factor; ++y) {
         for (int x = 0; x < size.x; ++x) {
           int red = count / 2, green = count / 2, blue = count / 2;
@@ -76,8 +72,8 @@ core::DrawRequest reduced(const core::DrawRequest& request, int factor) {
 }
 
 Compose magnified(const core::View& view, int factor) {
-  return [size = glm::ivec2(view.width, view.height), factor](std::vector<core::Frame> frames) {
-    const core::Frame& small = frames.at(0);
+  return [size = glm::ivec2(view.width, view.height), factor](std::size_t, const NextFrame& next) {
+    const core::Frame small = next();
     core::Frame large = blank_frame(size);
     // The middles of both images coincide.
     const auto place = [factor](int k, int large_side, int small_side) {

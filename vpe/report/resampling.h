@@ -11,11 +11,14 @@ namespace vpe::report {
 // Returns a black frame of this size, without ranges.
 core::Frame blank_frame(const glm::ivec2& size);
 
-// Returns requests for the same view with `factor` times as many columns and rows, in strips whose height is a
-// multiple of `factor`.
+// Returns requests for the same view with `factor` times as many columns and rows, in strips whose height is a multiple of
+// `factor`: of kMostStripPixels at most where that is possible, and not higher than kMostStripRows.
+inline constexpr int kMostStripPixels =
+    1 << 21;  // larger: fewer strips, each of which takes some 50 bytes a pixel by rays
+inline constexpr int kMostStripRows = 720;
 std::vector<core::DrawRequest> enlarged(const core::DrawRequest& request, int factor);
 
-// Averages each `factor` x `factor` pixels of those strips, rounded to whole steps. Drops ranges.
+// Averages each `factor` x `factor` pixels of those strips, one strip at a time, rounded to whole steps. Drops ranges.
 Compose average(const core::View& view, int factor);
 
 // Returns a request for the same view with `factor` times fewer columns and rows, rounded up: where the size is

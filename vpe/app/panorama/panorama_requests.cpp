@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/vector_int2_sized.hpp>
 #include <stdexcept>
 
 #include "vpe/report/resampling.h"
@@ -35,6 +36,22 @@ std::vector<panorama::Piece> pieces_of(const panorama::PanoramaMap& map, const p
     all.insert(all.end(), pieces.begin(), pieces.end());
   }
   return all;
+}
+
+// Returns the pixel of `map` in the direction of each pixel of `onto`, row by row.
+std::vector<glm::i64vec2> nearest_pixels(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto) {
+  std::vector<glm::i64vec2> nearest;
+  nearest.reserve(static_cast<std::size_t>(onto.width_px * onto.height_px));
+  for (std::int64_t y = 0; y < onto.height_px; ++y) {
+    for (std::int64_t x = 0; x < onto.width_px; ++x) {
+      const glm::dvec2 place =
+          map.place(onto.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
+      nearest.emplace_back(
+          std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place.x)), 0, map.width_px - 1),
+          std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place.y)), 0, map.height_px - 1));
+    }
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -72,22 +89,22 @@ core::Frame mosaic(const panorama::PanoramaMap& map, const std::vector<core::Fra
 }
 
 report::Compose resample(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto) {
-  return [map, onto](std::vector<core::Frame> frames) {
-    const core::Frame drawn = mosaic(map, frames);
+  return [map, onto](std::size_t count, const report::NextFrame& next) {
+    const std::vector<panorama::Piece> pieces = pieces_of(map, {});
+    if (pieces.size() != count)
+      throw std::invalid_argument("resample: the pieces differ from those that were drawn");
+    const std::vector<glm::i64vec2> sources = nearest_pixels(map, onto);
     core::Frame resampled =
         report::blank_frame({static_cast<int>(onto.width_px), static_cast<int>(onto.height_px)});
-    const bool ranges = !drawn.range_m.empty();
-    if (ranges) resampled.range_m.resize(resampled.colour.size());
-    for (std::int64_t y = 0; y < onto.height_px; ++y) {
-      for (std::int64_t x = 0; x < onto.width_px; ++x) {
-        const glm::dvec2 place =
-            map.place(onto.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
-        const auto column =
-            std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place.x)), 0, map.width_px - 1);
-        const auto row =
-            std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place.y)), 0, map.height_px - 1);
-        const auto from = static_cast<std::size_t>(row * map.width_px + column);
-        const auto to = static_cast<std::size_t>(y * onto.width_px + x);
+    for (const panorama::Piece& piece : pieces) {
+      const core::Frame drawn = next();
+      const bool ranges = !drawn.range_m.empty();
+      if (ranges) resampled.range_m.resize(resampled.colour.size());
+      for (std::size_t to = 0; to < sources.size(); ++to) {
+        const std::int64_t x = sources[to].x - piece.x;
+        const std::int64_t y = sources[to].y - piece.y;
+        if (x < 0 || x >= piece.width || y < 0 || y >= piece.height) continue;
+        const auto from = static_cast<std::size_t>(y * piece.width + x);
         resampled.colour[to] = drawn.colour[from];
         if (ranges) resampled.range_m[to] = drawn.range_m[from];
       }

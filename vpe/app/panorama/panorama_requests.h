@@ -28,7 +28,8 @@ std::vector<core::DrawRequest> requests_of(const panorama::PanoramaMap& map, con
 core::Frame mosaic(const panorama::PanoramaMap& map, const std::vector<core::Frame>& frames);
 
 // Makes an image of `onto`: each pixel is the nearest one of `map` in its direction, with its range. A map
-// equal to `onto` is taken unchanged.
+// equal to `onto` is taken unchanged. Takes the frames of requests_of() and holds one at a time; throws
+// std::invalid_argument for another number of them.
 report::Compose resample(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto);
 
 }  // namespace vpe::app

@@ -30,6 +30,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Parts of --memory. What an image takes while rays draw it comes on top of what they keep of the ground, with triangles it is
+// included. Larger: tiles are read again less often, and the process takes more than --memory.
+constexpr double kMostOfRays = 0.5;
+constexpr std::size_t kSurfaceShare = 16;  // for the errors of pixels
+
 constexpr const char* kExactBaseline = "exact";
 constexpr const char* kEmbreeBaseline = "embree";
 
@@ -66,8 +71,12 @@ class Renderers {
       : planet_(std::move(planet)), common_(common), context_(gl::Context::create()) {}
 
   std::unique_ptr<core::Renderer> make(const std::string& name, double share) const {
-    const auto bytes = static_cast<std::size_t>(share * static_cast<double>(memory_bytes(common_)));
-    if (name == kRayImages) return voxel::make_ray_renderer(planet_, {bytes, common_.threads});
+    const auto part = [&](double of_all) {
+      return static_cast<std::size_t>(of_all * static_cast<double>(memory_bytes(common_)));
+    };
+    const std::size_t bytes = part(share);
+    if (name == kRayImages)
+      return voxel::make_ray_renderer(planet_, {part(std::min(share, kMostOfRays)), common_.threads});
     if (name == kEmbreeRanges) return make_embree_renderer(planet_, common_.threads);
     gl::RendererOptions options;
     options.memory_bytes = bytes;
@@ -153,7 +162,7 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
 
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
-  const paging::Surface surface(planet, memory_bytes(common) / 8);
+  const paging::Surface surface(planet, memory_bytes(common) / kSurfaceShare);
   const std::vector<NamedView> views =
       chosen_views(arguments, arguments.planet.empty() ? embedded_views(surface) : views_of(surface));
   report::RunFacts facts = read_run_facts(common);
