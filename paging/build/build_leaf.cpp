@@ -18,11 +18,25 @@ using vpe::base::mutated;
 
 namespace {
 
-// Finest tiles have meshes of decreasing error, each a quarter of the one before and so about four times the
-// triangles, until the next one would come close to the full grid, which is the last.
+// Finest tiles have meshes of decreasing error, the second a quarter of the first and each later one half of the one
+// before, until the next one would come close to the full grid, which is the last. The tolerance of a variant is the same
+// in all tiles of a level, since equal variants meet exactly (lod::skirt_depths). Where ground is so rough that many tiles
+// of an image would be full grids, meshes go on up to a larger share.
 constexpr double kLastMeshShare = 0.1;
-constexpr double kVariantStep = 0.25;
+constexpr double kLastRoughShare = 0.4;
+constexpr double kFirstStep = 0.25;
+constexpr double kLaterStep = 0.5;
 constexpr int kMaxMeshVariants = 12;
+// Edges beside a border cannot be repaired by its posts, so the error of a mesh is above its tolerance where the border
+// keeps too few. Smaller: more triangles along borders. Not of the first mesh: its borders are those of inner tiles.
+constexpr double kBorderShare = 0.5;
+
+// Returns true if a mesh is too far off to be drawn from the distance of a tile's side, at an error of a pixel and a
+// focal length of 1024 pixels.
+bool is_needed_finer(const lod::ErrorTerms& terms, double side_m) {
+  constexpr double kFocal_px = 1024;
+  return terms.total_m * kFocal_px > side_m;
+}
 
 // Samples heights, and the sources of posts on a planet of several.
 void sample_posts(const SampleInputs& sampling, std::span<const glm::dvec3> directions, double spacing_m,
@@ -151,9 +165,12 @@ Node mesh_leaf(const MeshInputs& meshing, const SampledLeaf& leaf, TileStore& st
   const auto mesher = meshing.meshers.acquire();
   const auto full = static_cast<std::uint32_t>(2 * n * n);
   const lod::FinePosts fine(posts, meta.radius_m);
+  const double side_m = lod::nominal_side_m(key.level, meta.radius_m);
   double tolerance = mesh_tolerance_m(meshing, key.level);
-  for (int variant = 0; variant < kMaxMeshVariants; ++variant, tolerance *= kVariantStep) {
-    const lod::BorderPosts borders = borders_of(posts, leaf.lines, leaf.border_step, tolerance, meta.radius_m);
+  for (int variant = 0; variant < kMaxMeshVariants; ++variant) {
+    const double border_share = variant == 0 ? 1.0 : kBorderShare;
+    const lod::BorderPosts borders =
+        borders_of(posts, leaf.lines, leaf.border_step, border_share * tolerance, meta.radius_m);
     const PackedMesh mesh = pack_mesh(variant == 0 ? mesher->mesh(posts, borders, tolerance, meta.radius_m)
                                                    : mesher->refine(borders, tolerance),
                                       posts, meta.quantum_m);
@@ -162,7 +179,9 @@ Node mesh_leaf(const MeshInputs& meshing, const SampledLeaf& leaf, TileStore& st
         lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, meta.quantum_m), meta.radius_m).measure(fine);
     payload.meshes.push_back(encode_mesh(mesh));
     node.variants.push_back({terms, triangles});
-    if (triangles > kLastMeshShare * full) break;
+    tolerance *= variant == 0 ? kFirstStep : kLaterStep;
+    const double last_share = is_needed_finer(terms, side_m) ? kLastRoughShare : kLastMeshShare;
+    if (triangles > last_share * full) break;
   }
   node.variants.push_back({{}, full});
   // Coarser variants never state less than finer ones.

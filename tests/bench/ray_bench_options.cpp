@@ -12,7 +12,7 @@ void refuse(const std::string& what) {
   throw std::invalid_argument(
       what +
       "; ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale S] "
-      "[--threads N] [--rounds N] [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] "
+      "[--threads N] [--rounds N] [--cell PX] [--nearest PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] "
       "[--benchmark_filter=REGEX] [--help]");
 }
 
@@ -41,6 +41,8 @@ RayBenchOptions parse_options(int argc, char** argv) {
       options.rounds = static_cast<int>(number(1));
     } else if (key == "--cell") {
       options.cell_px = number(0);
+    } else if (key == "--nearest") {
+      options.nearest_px = number(0);
     } else if (key == "--show") {
       options.show = static_cast<int>(number(0));
     } else if (key == "--memory") {
@@ -60,7 +62,7 @@ std::string cached_mars() {
   const std::filesystem::path folder = cache != nullptr
                                            ? std::filesystem::path(cache)
                                            : std::filesystem::path(home != nullptr ? home : ".") / ".cache";
-  return (folder / "vpe" / "embedded-mars-5.vpe").string();
+  return (folder / "vpe" / "embedded-mars-6.vpe").string();
 }
 
 }  // namespace bench

@@ -48,9 +48,10 @@ struct FrameStats {
   int tiles_culled_horizon = 0;
   int tiles_culled_occlusion = 0;  // hidden behind nearer ground
   int tiles_drawn = 0;
-  int tiles_missing = 0;       // selected for this view, but not loaded and so not drawn
-  int tiles_substituted = 0;   // drawn in place of missing ones
-  std::int64_t triangles = 0;  // of the drawn meshes, without skirts
+  int tiles_missing = 0;                // selected for this view, but not loaded and so not drawn
+  int tiles_substituted = 0;            // drawn in place of missing ones
+  std::int64_t triangles = 0;           // of the drawn meshes, without skirts
+  std::int64_t triangles_in_sight = 0;  // of these, in pieces that are in the image and not behind the horizon
   std::int64_t skirt_triangles = 0;
   std::int64_t bytes_resident = 0;  // payloads in CPU and GPU memory
   std::vector<int> tiles_by_level;  // index 0 = level 0

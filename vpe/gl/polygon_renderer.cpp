@@ -259,6 +259,7 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
     draw.mesh = t.mesh;
     draw.key = t.tile->key;
     draw.skirt_m = t.skirt_m;
+    draw.surface = t.surface;
     const double reach_m = clip.near_m + 2.0 * t.mesh->longest_edge_m;
     draw.by_triangle = request.want_range || t.tile->min_distance_m < reach_m * corner_secant;
     if (!image) continue;

@@ -47,9 +47,11 @@ GpuMesh upload(const TileGeometry& geometry) {
   mesh.centre_m = geometry.centre_m;
   mesh.first_foot = geometry.surface_vertices;
   mesh.ranges = geometry.ranges;
+  mesh.frame = geometry.frame;
+  mesh.pieces = geometry.pieces;
   mesh.quantisation_m = geometry.quantisation_m;
   mesh.longest_edge_m = geometry.longest_edge_m;
-  mesh.bytes = vertex_bytes + index_bytes + kMeshObjectBytes;
+  mesh.bytes = vertex_bytes + index_bytes + kMeshObjectBytes + mesh.pieces.size() * sizeof(MeshPiece);
   return mesh;
 }
 

@@ -27,6 +27,8 @@ struct GpuMesh {
   glm::dvec3 centre_m{0, 0, 0};
   std::uint32_t first_foot = 0;  // vertices from here on are feet of skirts
   IndexRanges ranges;
+  PieceFrame frame;               // as of TileGeometry
+  std::vector<MeshPiece> pieces;  // likewise
   double quantisation_m = 0;
   double longest_edge_m = 0;
   std::shared_ptr<const lod::OccluderProfile> occluders;  // null: not made

@@ -37,6 +37,8 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
   std::string head = preamble(kTileUniforms);
   if (features.texture) define(head, "TEXTURE");
   if (features.facets) define(head, "FACETS");
+  const bool has_geometry = part != TilePart::kSurface || features.by_triangle;
+  if (features.facets && !has_geometry) define(head, "FACETS_FROM_FIRST");
   if (features.palette) define(head, "PALETTE");
   if (features.nodata) define(head, "NODATA");
   if (features.nodata_image) define(head, "NODATA_IMAGE");
@@ -50,7 +52,7 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
   out.fragment = join(
       head, {shader_text::kGroundColour, features.nodata ? shader_text::kNodataPattern : std::string_view(),
              skirt ? shader_text::kSkirtFragment : shader_text::kSurfaceFragment});
-  if (part != TilePart::kSurface || features.by_triangle) {
+  if (has_geometry) {
     out.geometry = join(head, {skirt                       ? shader_text::kSkirtGeometry
                                : part == TilePart::kRibbon ? shader_text::kRibbonGeometry
                                                            : shader_text::kTriangleGeometry,

@@ -7,6 +7,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "cull/frustum.h"
+#include "cull/horizon.h"
 #include "lod/front_to_back.h"
 #include "lod/options.h"
 #include "lod/reevaluate.h"
@@ -339,6 +341,25 @@ void TileCover::lay_out(const core::View& view) {
       if (depth > 0.0F) depth += static_cast<float>(kFootError * (tile.min_distance_m + 2.0 * side));
     }
   }
+  find_seen_pieces(view);
+}
+
+// Ground that the sphere below all of it hides is hidden by what is drawn, which is within its errors of the ground.
+void TileCover::find_seen_pieces(const core::View& view) {
+  double geometric_error_m = 0;
+  for (const SceneTile& t : tiles_) geometric_error_m = std::max(error_m, t.tile->geometric_error_m);
+  const double occluder_m = planet_.tree().lowest_radius_m(drawn_.drawn.exaggeration) - geometric_error_m;
+  const PieceView seen{cull::make_frustum(view), cull::make_horizon(cull::make_camera(view.camera.position_m),
+                                                                    std::max(0.0, occluder_m))};
+  std::vector<std::size_t> ends;
+  ranges_.clear();
+  for (const SceneTile& t : tiles_) {
+    seen_ranges(t.mesh->pieces, t.mesh->frame, seen, ranges_);
+    ends.push_back(ranges_.size());
+  }
+  std::size_t begin = 0;
+  for (std::size_t n = 0; n < tiles_.size(); begin = ends[n++])
+    tiles_[n].surface = std::span(ranges_).subspan(begin, ends[n] - begin);
 }
 
 std::size_t TileCover::bytes() const {
@@ -375,6 +396,7 @@ void TileCover::report(core::DrawResult& result) const {
     ++s.tiles_by_level[level];
     const IndexRanges& ranges = t.mesh->ranges;
     s.triangles += ranges.surface / 3;
+    for (const IndexRange& range : t.surface) s.triangles_in_sight += (range.end - range.begin) / 3;
     for (std::size_t e = 0; e < 4; ++e) {
       if (t.skirt_m[e] > 0.0F) s.skirt_triangles += (ranges.skirts[e + 1] - ranges.skirts[e]) / 2;
     }

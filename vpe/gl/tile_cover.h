@@ -25,6 +25,7 @@ struct SceneTile {
   const GpuMesh* mesh = nullptr;
   const GpuTexture* texture = nullptr;  // null when the mode needs none
   std::array<float, 4> skirt_m{};       // by lod::Edge
+  std::span<const IndexRange> surface;  // the triangles that the image may show
 };
 
 // Selects the tiles of a frame, replaces those that are not resident by fallbacks, and leaves out those that
@@ -55,7 +56,7 @@ class TileCover {
   // Covers the frame with what is resident. Loads only roots of faces that would be uncovered.
   void use_resident(const core::DrawRequest& request);
 
-  // Collects the meshes, textures and skirt depths of the cover.
+  // Collects the meshes, textures, skirt depths and seen pieces of the cover.
   void lay_out(const core::View& view);
 
   // Returns the tiles to draw, as lay_out() found them.
@@ -96,6 +97,7 @@ class TileCover {
   void merge_hidden(std::span<const std::uint8_t> left_out);
   void occlude(const lod::Selection& tiles, const core::View& view, std::vector<std::uint8_t>& hidden);
   bool is_drawable(const lod::SelectedTile& tile);
+  void find_seen_pieces(const core::View& view);
 
   const paging::PlanetFile& planet_;
   TileStreamer& streamer_;
@@ -116,6 +118,7 @@ class TileCover {
   double occlude_ms_ = 0;
   std::vector<std::array<float, 4>> skirts_;
   std::vector<SceneTile> tiles_;
+  std::vector<IndexRange> ranges_;  // of all tiles
 };
 
 }  // namespace vpe::gl

@@ -206,6 +206,26 @@ void TileDrawer::draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t be
                  reinterpret_cast<const void*>(index_size * begin));
 }
 
+void TileDrawer::draw_surface(const TileDraw& tile, bool facets) {
+  const GpuMesh& mesh = *tile.mesh;
+  if (facets) {  // each call counts its triangles from 0
+    for (const IndexRange& range : tile.surface) {
+      glUniform1i(tile_uniform("first_facet"), static_cast<GLint>(range.begin / 3));
+      draw_indices(mesh, GL_TRIANGLES, range.begin, range.end);
+    }
+    return;
+  }
+  const std::size_t index_size = mesh.short_indices ? 2 : 4;
+  counts_.clear();
+  begins_.clear();
+  for (const IndexRange& range : tile.surface) {
+    counts_.push_back(static_cast<GLsizei>(range.end - range.begin));
+    begins_.push_back(reinterpret_cast<const void*>(index_size * range.begin));
+  }
+  glMultiDrawElements(GL_TRIANGLES, counts_.data(), mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
+                      begins_.data(), static_cast<GLsizei>(counts_.size()));
+}
+
 void TileDrawer::draw_part(const TileDraw& tile, const TileFeatures& features, TilePart part,
                            const core::View& view, float near_m) {
   const GpuMesh& mesh = *tile.mesh;
@@ -215,9 +235,9 @@ void TileDrawer::draw_part(const TileDraw& tile, const TileFeatures& features, T
   };
   switch (part) {
     case TilePart::kSurface:
+      if (tile.surface.empty()) return;
       use(tile, features, part, view, near_m);
-      if (features.by_triangle && features.facets) glUniform1i(tile_uniform("first_facet"), 0);
-      draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface);
+      draw_surface(tile, features.facets);
       return;
     case TilePart::kRibbon:
       use(tile, features, part, view, near_m);
@@ -262,15 +282,15 @@ void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection
     features.by_triangle = false;
     use(program(TilePart::kSurface, features), features, TilePart::kSurface, view, nearer);
     use(tile, features, TilePart::kSurface, view, nearer.near_m);
-    draw_one(*tile.mesh);
+    draw_one(tile);
   }
 }
 
 void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& projection,
                                std::span<const TileDraw> tiles, float size_px) {
   glPointSize(size_px);
-  draw_before_ground(view, projection, tiles, [](const GpuMesh& mesh) {
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(mesh.first_foot));
+  draw_before_ground(view, projection, tiles, [](const TileDraw& tile) {
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(tile.mesh->first_foot));
   });
   glPointSize(1.0F);
 }
@@ -278,8 +298,7 @@ void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& pro
 void TileDrawer::draw_edges(const core::View& view, const ClipProjection& projection,
                             std::span<const TileDraw> tiles) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-  draw_before_ground(view, projection, tiles,
-                     [this](const GpuMesh& mesh) { draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface); });
+  draw_before_ground(view, projection, tiles, [this](const TileDraw& tile) { draw_surface(tile, false); });
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 

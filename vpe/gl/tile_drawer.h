@@ -22,6 +22,7 @@ namespace vpe::gl {
 // Describes how a tile is drawn.
 struct TileDraw {
   const GpuMesh* mesh = nullptr;
+  std::span<const IndexRange> surface;  // the triangles of the surface that are drawn
   const GpuTexture* texture = nullptr;  // null: the palette's colours, or one colour
   bool flat = false;                    // one colour; of a texture only the nodata ground is shown
   bool palette = false;                 // without a texture: the palette's colours
@@ -134,6 +135,7 @@ class TileDrawer {
   void draw_before_ground(const core::View& view, const ClipProjection& projection,
                           std::span<const TileDraw> tiles, const DrawOne& draw_one);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
+  void draw_surface(const TileDraw& tile, bool facets);
 
   double radius_m_;
   double exaggeration_ = 1;
@@ -143,7 +145,9 @@ class TileDrawer {
   Texture2D palette_;
   glm::vec2 palette_terms_{0, 0};
   VertexArray array_;
-  bool reads_normals_ = false;  // array_ does
+  bool reads_normals_ = false;   // array_ does
+  std::vector<GLsizei> counts_;  // of a call that draws several ranges
+  std::vector<const void*> begins_;
   double step_px_ = 1.0 / 256;
   const TileDraw* first_with_id_ = nullptr;  // not null: IDs are drawn, relative to this tile
 };

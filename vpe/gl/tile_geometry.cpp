@@ -105,6 +105,8 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
   }
   const auto end = [&out] { return static_cast<std::uint32_t>(out.indices.size()); };
   out.ranges.surface = end();
+  out.frame = piece_frame(out.centre_m);
+  out.pieces = mesh_pieces(mesh, out.positions_m, out.frame);
   std::vector<std::uint32_t> lines_of_border;
   for (std::size_t e = 0; e < lod::kEdges.size(); ++e) {
     const std::vector<std::uint32_t> top = border(mesh, lod::kEdges[e]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/mesh/mesh.h"
+#include "vpe/gl/mesh_pieces.h"
 
 namespace vpe::gl {
 
@@ -51,11 +52,14 @@ struct TileGeometry {
   std::uint32_t surface_vertices = 0;       // number of vertices of the mesh
   std::vector<std::uint32_t> indices;
   IndexRanges ranges;
+  PieceFrame frame;               // of the pieces; its origin is centre_m
+  std::vector<MeshPiece> pieces;  // of the surface, in the order of its triangles
   double quantisation_m = 0;  // no vertex is farther than this from its exact place, nor 2^-24 of its position
   double longest_edge_m = 0;  // longest edge of a triangle of the mesh
   std::size_t bytes() const {
     return positions_m.capacity() * sizeof(VertexPosition) + charts.capacity() * sizeof(VertexChart) +
-           normals.capacity() * sizeof(VertexNormal) + indices.capacity() * 4;
+           normals.capacity() * sizeof(VertexNormal) + indices.capacity() * 4 +
+           pieces.capacity() * sizeof(MeshPiece);
   }
 };
 

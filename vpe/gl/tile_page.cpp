@@ -17,10 +17,13 @@ template <typename Visit>
 void PageLoader::with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const {
   if (lod::is_full_grid(*planet_->tree().find(tile), variant)) {
     const paging::TileHeights heights = planet_->heights(tile, exaggeration);
-    visit(lod::mesh_full(heights.posts.intervals), std::span<const double>(heights.posts.height_m));
+    lod::TileMesh mesh = lod::mesh_full(heights.posts.intervals);
+    order_by_pieces(mesh);
+    visit(mesh, std::span<const double>(heights.posts.height_m));
     return;
   }
-  const paging::PackedMesh packed = planet_->mesh(tile, variant);
+  paging::PackedMesh packed = planet_->mesh(tile, variant);
+  order_by_pieces(packed.mesh);
   std::vector<double> heights(packed.height_q.size());
   std::transform(packed.height_q.begin(), packed.height_q.end(), heights.begin(),
                  [q = planet_->meta().quantum_m](std::int32_t n) { return n * q; });

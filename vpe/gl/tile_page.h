@@ -75,7 +75,8 @@ class PageLoader {
 
  private:
   ShadedTile shade(const PageKey& key, std::string& coarse_because) const;
-  // Calls visit(mesh, heights of its vertices as drawn) for one of a tile's meshes.
+  // Calls visit(mesh, heights of its vertices as drawn) for one of a tile's meshes. Its triangles are in the order of
+  // pieces (mesh_pieces.h), which facets share.
   template <typename Visit>
   void with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const;
 

@@ -32,7 +32,7 @@ namespace {
 
 // The first is raised whenever the builder or the embedded planet changes the content of a cached file, the
 // second whenever rasters are interpreted differently.
-constexpr int kCacheGeneration = 5;
+constexpr int kCacheGeneration = 6;
 constexpr int kRasterGeneration = 3;
 
 const std::vector<std::string> kEmbeddedArguments{"embedded", "--image=embedded"};

@@ -5,6 +5,9 @@ layout(location = LOCATION_TINT) uniform vec4 tint;
 #if defined(TEXTURE) || defined(FACETS)
 layout(binding = 0) uniform sampler2D surface;
 #endif
+#ifdef FACETS_FROM_FIRST
+layout(location = LOCATION_FIRST_FACET) uniform int first_facet;
+#endif
 #ifdef CHART
 layout(location = 0) in vec3 texture_position;
 #endif
@@ -76,7 +79,11 @@ bool facet_has_data(vec2 at) {
 
 void colour_ground() {
 #if defined(FACETS)
-  colour = texelFetch(surface, ivec2(gl_PrimitiveID & 255, gl_PrimitiveID >> 8), 0);
+  int facet = gl_PrimitiveID;
+#ifdef FACETS_FROM_FIRST
+  facet += first_facet;
+#endif
+  colour = texelFetch(surface, ivec2(facet & 255, facet >> 8), 0);
   bool has_data = colour.a > 0.5;
   colour.a = 1.0;
 #elif defined(TEXTURE)
