@@ -2,7 +2,7 @@
 // the figures.
 //
 //   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
-//             [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
+//             [--cell PX] [--nearest PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
 //             [--benchmark_out=FILE ...]
 //
 // Scenes are patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR if missing there
@@ -170,6 +170,7 @@ class Bench {
     std::vector<float> ours_m(pixels), theirs_m(pixels);
     vpe::voxel::RangeOptions cast_options;
     cast_options.cell_px = options_.cell_px;
+    if (options_.nearest_px > 0) cast_options.sectors = {true, options_.nearest_px};
     caster_->cast(c.view, cast_options, pool_, ours_m);  // loads tiles
 
     const bench::EmbreeImage image(c.view);
@@ -213,7 +214,8 @@ class Bench {
     // theirs_m holds the last peer's ranges. Mesh and grid have the same corners.
     const bench::Agreement agreement = bench::compare(c.view, ours_m, theirs_m, *surface_);
     row.agreement = bench::to_text(agreement);
-    if (options_.cell_px > 0) row.agreement += "; " + shifts(c.view, ours_m, theirs_m, state);
+    if (options_.cell_px > 0 || options_.nearest_px > 0)
+      row.agreement += "; " + shifts(c.view, ours_m, theirs_m, state);
     for (std::size_t n = 0; n < std::min(agreement.ours_wrong.size(), static_cast<std::size_t>(options_.show));
          ++n) {
       const bench::WrongPixel& w = agreement.ours_wrong[n];

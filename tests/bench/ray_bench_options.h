@@ -14,7 +14,9 @@ struct RayBenchOptions {
   int threads = 0;
   int rounds = 5;
   double cell_px = 0;  // > 0: mode multires, and shifts against Embree's exact image
-  int show = 0;        // wrong pixels of a view to list on stderr
+  double nearest_px =
+      0;  // > 0: perspective pixels take the nearest sample of columns so far apart (rays.sample=nearest)
+  int show = 0;  // wrong pixels of a view to list on stderr
   double memory_mib = 4096;
   double mesh_limit = 4e7;  // triangles; beyond it only the grid, whose structure is a sixth as large
 };

@@ -35,6 +35,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.is_below_ground = true;
   c.thinning_px = 2.125;
   c.middle_bound_px = 0.25;
+  c.sample_distance_px = 0.5;
   c.smoothing_m = 1.75;
   c.smoothing_px = 0.0625;
   c.carried = Certificate::Carried{0.875, 0.9, 0.0625, 0.0375};
@@ -43,6 +44,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   EXPECT_NE(meaning.find(" " + c.synthetic), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
   EXPECT_NE(meaning.find("thinning_px"), std::string::npos);
+  EXPECT_NE(meaning.find("rays.sample=nearest"), std::string::npos);
   EXPECT_NE(meaning.find("smoothing_px"), std::string::npos);
   EXPECT_NE(meaning.find("carrying_px"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
@@ -51,15 +53,16 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   json.erase("what_this_means");
   EXPECT_EQ(
       json,
-      nlohmann::json({{"tile_error_m", 1.25},        {"tile_error_px", 0.5},        {"quantisation_m", 0.001},
-                      {"quantisation_px", 0.0001},   {"shift_bound_px", 0.5001},    {"picture_bound_px", 0.375},
-                      {"thinning_px", 2.125},        {"middle_bound_px", 0.25},     {"tolerance_px", 1.0},
-                      {"tiles_drawn", 12},           {"tiles_missing", 3},          {"tiles_substituted", 4},
-                      {"share_at_data_limit", 0.25}, {"share_without_data", 0.125}, {"resampling_max_m", 7.5},
-                      {"resampling_rms_m", 0.75},    {"source_accuracy_m", 3.0},    {"illustration", true},
-                      {"exaggeration", 2.0},         {"corner_stretch", 2.5},       {"below_ground", true},
-                      {"carrying_px", 0.875},        {"carried_share", 0.9},        {"between_share", 0.0625},
-                      {"drawn_share", 0.0375},       {"smoothing_m", 1.75},         {"smoothing_px", 0.0625}}));
+      nlohmann::json({{"tile_error_m", 1.25},      {"tile_error_px", 0.5},        {"quantisation_m", 0.001},
+                      {"quantisation_px", 0.0001}, {"shift_bound_px", 0.5001},    {"picture_bound_px", 0.375},
+                      {"thinning_px", 2.125},      {"middle_bound_px", 0.25},     {"sample_distance_px", 0.5},
+                      {"tolerance_px", 1.0},       {"tiles_drawn", 12},           {"tiles_missing", 3},
+                      {"tiles_substituted", 4},    {"share_at_data_limit", 0.25}, {"share_without_data", 0.125},
+                      {"resampling_max_m", 7.5},   {"resampling_rms_m", 0.75},    {"source_accuracy_m", 3.0},
+                      {"illustration", true},      {"exaggeration", 2.0},         {"corner_stretch", 2.5},
+                      {"below_ground", true},      {"carrying_px", 0.875},        {"carried_share", 0.9},
+                      {"between_share", 0.0625},   {"drawn_share", 0.0375},       {"smoothing_m", 1.75},
+                      {"smoothing_px", 0.0625}}));
 }
 
 TEST(Certificate, TheSourcesSayWhatIsSynthetic) {

@@ -20,17 +20,19 @@ class DrawnGround {
   DrawnGround(const paging::Surface& surface, const vpe::core::View& view, double cell_px)
       : walk_(surface, camera(surface, view.camera.position_m), 1, {cell_px, vpe::core::focal_px(view)}) {}
 
-  // Returns the drawn tile along a direction.
+  // Returns the tile whose posts are drawn along a direction.
   lod::TileTree::Index tile(const glm::dvec3& direction) const {
     const mars::ChartPoint at = mars::chart_point(direction);
     const lod::TileTree& tree = walk_.tree();
     auto tile = static_cast<lod::TileTree::Index>(at.face);
+    lod::TileTree::Index parent = tile;
     while (!walk_.ends_at(tile)) {
       const lod::TileKey& key = tree[tile].key;
+      parent = tile;
       tile = tree.first_child(tile) + (at.u >= walk_.middle_line(key.level, key.i) ? 1U : 0U) +
              (at.v >= walk_.middle_line(key.level, key.j) ? 2U : 0U);
     }
-    return tile;
+    return walk_.has_parents_posts(tile) ? parent : tile;
   }
 
  private:

@@ -10,6 +10,7 @@
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/worst.h"
 #include "tests/voxel/stated_range.h"
+#include "vpe/voxel/cast/view_fan.h"
 #include "vpe/voxel/columns/columns.h"
 
 namespace {
@@ -114,6 +115,26 @@ class Columns : public testing::Test {
     return view;
   }
 
+  // Returns a round view whose camera is tilted in any way.
+  static core::View tilted_view(Random& random, const paging::Surface& surface, double exaggeration) {
+    const bool is_cylinder = random.integer(0, 1) == 0;
+    core::View view = random_view(
+        random, surface, is_cylinder ? core::Projection::kCylinder : core::Projection::kEquirectangular,
+        exaggeration);
+    const double pitch =
+        random.integer(0, 3) == 0 ? -mars::kPi / 2 : random.uniform(-mars::kPi / 2, mars::kPi / 2);
+    const double roll = random.integer(0, 2) == 0 ? 0 : random.uniform(-mars::kPi, mars::kPi);
+    mars::Axes& axes = view.camera.axes;
+    const auto turn = [](glm::dvec3& a, glm::dvec3& b, double angle) {
+      const glm::dvec3 turned = std::cos(angle) * a + std::sin(angle) * b;
+      b = std::cos(angle) * b - std::sin(angle) * a;
+      a = turned;
+    };
+    turn(axes.forward, axes.up, pitch);
+    turn(axes.right, axes.up, roll);
+    return view;
+  }
+
   test_support::TempDir dir_;
 };
 
@@ -175,6 +196,76 @@ TEST_F(Columns, PerspectiveImagesAreExactButForWhatIsNarrowerThanAPixel) {
   EXPECT_LE(wide.ties, wide.pixels / 100);
   EXPECT_LT(sum.at(0.99), 1e-6);
   EXPECT_LT(wide.at(0.99), 1e-6);
+}
+
+TEST_F(Columns, TiltedRoundImagesAreExactButForWhatIsNarrowerThanAPixel) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(78);
+  Agreement sum;
+  Agreement wide;
+  int by_fan = 0;
+  while (sum.pixels < 100000 || wide.pixels < 100000) {
+    const double exaggeration = random.integer(0, 2) == 0 ? random.uniform(0.5, 20) : 1.0;
+    core::View view = tilted_view(random, caster.surface(), exaggeration);
+    const bool is_fine = wide.pixels > sum.pixels;
+    if (is_fine) {
+      // Wide enough for pixels of less than 2 mrad, of which a part is drawn.
+      view.width = random.integer(5000, 9000);
+      view.height = random.integer(400, 3000);
+      view.fov_deg = std::min(view.fov_deg, 0.05 * view.height);
+      view.principal_offset_px = {0, 0};
+      view.part = {random.integer(0, 4900), random.integer(0, 340), 90, 60};
+    }
+    const vpe::voxel::ViewFan fan(view, glm::normalize(view.camera.position_m));
+    const glm::ivec2 size = core::drawn_size(view);
+    if (fan.sample_count() < 8 * static_cast<std::int64_t>(size.x) * size.y) ++by_fan;
+    compare(fan.spacing_rad() < 2e-3 ? sum : wide, caster, view, cast(caster, view, {exaggeration}),
+            exaggeration, 0.7 * fan.spacing_rad(), 1);
+  }
+  EXPECT_GE(by_fan, 40);
+  EXPECT_EQ(sum.wrong, 0) << "of " << sum.pixels;
+  EXPECT_LE(sum.ties, sum.pixels / 2000);
+  EXPECT_LE(wide.wrong, wide.pixels / 20000);
+  EXPECT_LE(wide.ties, wide.pixels / 100);
+  EXPECT_LT(sum.at(0.99), 1e-6);
+  EXPECT_LT(wide.at(0.99), 1e-6);
+  std::printf("fine: %d pixels, %d ties, %d wrong, p99 %.2g; wide: %d, %d, %d, %.2g; %d views by fans\n",
+              sum.pixels, sum.ties, sum.wrong, sum.at(0.99), wide.pixels, wide.ties, wide.wrong, wide.at(0.99),
+              by_fan);
+}
+
+TEST_F(Columns, TiltedRoundImagesDependOnNoThreadsAndLittleOnVectorUnits) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(79);
+  int ties = 0;
+  std::int64_t pixels = 0;
+  for (int n = 0; n < 8; ++n) {
+    core::View view = tilted_view(random, caster.surface(), 1);
+    view.part = {};
+    view.width = 90;
+    view.height = 60;
+    const std::vector<float> best = cast(caster, view);
+    pixels += static_cast<std::int64_t>(best.size());
+    ASSERT_EQ(best, cast(caster, view, {}, 1));
+    ASSERT_EQ(best, cast(caster, view, {}, 5));
+    RangeCaster fresh(caster.surface().shared_planet(), kBudget);
+    ASSERT_EQ(best, cast(fresh, view));
+    hwy::SetSupportedTargetsForTest(HWY_SCALAR);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const std::vector<float> other = cast(caster, view);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      const auto a = static_cast<double>(best[k]);
+      const auto b = static_cast<double>(other[k]);
+      if (a == b || std::abs(a - b) <= 2e-6 * a) continue;
+      const glm::dvec3 ray =
+          core::pixel_ray(view, static_cast<double>(k % 90) + 0.5, static_cast<double>(k / 90) + 0.5);
+      EXPECT_TRUE(is_tie(caster.surface(), {view.camera.position_m, ray}, b, 0.7 / core::focal_px(view))) << k;
+      ++ties;
+    }
+  }
+  EXPECT_LE(ties, pixels / 500);
 }
 
 TEST_F(Columns, FlatPlanetIsTheSphere) {

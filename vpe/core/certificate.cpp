@@ -28,6 +28,11 @@ std::string meaning(const Certificate& c) {
         "shift_bound_px that this adds, and what is narrower than two pixels may be missing there. "
         "middle_bound_px: shift_bound_px of the middle.";
   }
+  if (c.sample_distance_px > 0) {
+    text +=
+        " A pixel has the range of a ray up to sample_distance_px from its centre (rays.sample=nearest); shift_bound_px "
+        "includes by how much the ground may rise over that distance.";
+  }
   if (c.smoothing_m > 0) {
     text +=
         " The ground is drawn as smooth patches through the posts of the exact surface (rays.mode=perturbation): "
@@ -83,6 +88,7 @@ nlohmann::ordered_json to_json(const Certificate& c) {
     json["middle_bound_px"] = nullptr;
     if (c.middle_bound_px) json["middle_bound_px"] = *c.middle_bound_px;
   }
+  if (c.sample_distance_px > 0) json["sample_distance_px"] = c.sample_distance_px;
   if (c.smoothing_m > 0) {
     json["smoothing_m"] = c.smoothing_m;
     json["smoothing_px"] = c.smoothing_px;

@@ -29,6 +29,9 @@ struct Certificate {
   double thinning_px = 0;
   // The bound of the middle, where rays are not thinned. Absent if all of the image has one density.
   std::optional<double> middle_bound_px;
+  // Largest distance in the image between a pixel's centre and the ray whose range it has (rays.sample=nearest); 0 where each pixel has
+  // its own ray. shift_bound_px includes by how much ground may rise over that distance.
+  double sample_distance_px = 0;
   // Describes an image of smooth patches (rays.mode=perturbation): the largest distance between the patches and the
   // reference surface, and the part of shift_bound_px that this is. 0 in other modes.
   double smoothing_m = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vpe/voxel/downsampled_view.h"
+#include "vpe/voxel/ray_request.h"
 
 namespace vpe::voxel {
 
@@ -140,7 +141,7 @@ base::Rgb mixed(const base::Rgb& dense, const base::Rgb& outer, int distance) {
 }  // namespace
 
 double thinning_px(double steepest_slope) {
-  return std::max(kThinnedColour_px, kThinnedRange_px * std::hypot(1.0, steepest_slope));
+  return std::max(kThinnedColour_px, rise_px(kThinnedRange_px, steepest_slope));
 }
 
 std::optional<FoveaPlan> fovea_plan(const core::DrawRequest& request) {

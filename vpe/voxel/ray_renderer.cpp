@@ -220,13 +220,17 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   c.smoothing_m = image.smoothing_m;
   c.smoothing_px = image.smoothing_px;
   c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px + c.smoothing_px;
+  // Of the whole planet: what lies beside a ray may be ground that no ray has met.
+  const double steepest_slope = planet_->tree().steepest_slope(request.settings.exaggeration);
+  c.sample_distance_px = range_options(request, planet_->radius_m()).sectors.distance_px();
+  const double beside_px = rise_px(c.sample_distance_px, steepest_slope);
+  c.shift_bound_px += beside_px;
   if (image.is_thinned) {
-    // Of the whole planet: what lies beside a ray may be ground that no ray has met.
-    c.thinning_px = thinning_px(planet_->tree().steepest_slope(request.settings.exaggeration));
+    c.thinning_px = thinning_px(steepest_slope);
     c.shift_bound_px += c.thinning_px;
     if (image.middle)
-      c.middle_bound_px =
-          image.middle->screen_space_error_px + range_error_px * std::hypot(1.0, image.middle->steepest_slope);
+      c.middle_bound_px = image.middle->screen_space_error_px +
+                          range_error_px * std::hypot(1.0, image.middle->steepest_slope) + beside_px;
   }
   for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
@@ -353,7 +357,10 @@ void RayRenderer::draw_foveated(const core::DrawRequest& request, const FoveaPla
   outer.view = plan.outer;
   std::vector<float>& outer_m = fovea_.outer_m;
   outer_m.resize(drawn_pixels(outer.view));
-  ColumnWalk::Usage usage = cast_in_bands(outer.view, options, outer_m, image.fallbacks);
+  RangeOptions outer_options = options;
+  // Samples are as far away in the image as in its middle.
+  if (options.sectors.is_nearest) outer_options.sectors.spacing_px /= kThinned;
+  ColumnWalk::Usage usage = cast_in_bands(outer.view, outer_options, outer_m, image.fallbacks);
   usage.scale_px(core::focal_px(request.view) / core::focal_px(outer.view));
   image.usage.add(usage, planet_->tree());
   image.is_thinned = true;
@@ -395,7 +402,11 @@ void RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& fr
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  if (request.want_range) draw_one(request, frame.range_m, {}, image);
+  if (request.want_range) {
+    moved = request;
+    moved.want_colour = false;
+    draw_one(moved, frame.range_m, {}, image);
+  }
   if (request.paging.wait) prefetcher_.begin(request);
   const int n = static_cast<int>(offsets.size());
   image.nodata_pixels /= n;
@@ -425,7 +436,9 @@ ColumnWalk::Usage RayRenderer::cast_in_bands(const core::View& view, const Range
   // Rows of rays for each row of pixels.
   const std::size_t rays =
       options.method == RangeOptions::Method::kDiscrete ? static_cast<std::size_t>(options.discrete.rays) : 1;
-  const std::size_t most = max_image_bytes_ / 2 / kBytesOfSamples / std::max<std::size_t>(1, width * rays);
+  const double bytes =
+      static_cast<double>(kBytesOfSamples * width * rays) / std::min(1.0, options.sectors.spacing_px);
+  const auto most = static_cast<std::size_t>(static_cast<double>(max_image_bytes_ / 2) / std::max(1.0, bytes));
   const std::size_t rows = std::max(kLeastRows, most);
   if (rows >= height) return caster_.cast(view, options, pool_, range_m, &fallbacks);
   ColumnWalk::Usage usage;

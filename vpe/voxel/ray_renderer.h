@@ -3,7 +3,7 @@
 //
 // A pixel gets its colour in this order (docs/design/rays.md):
 //   RangeCaster     finds the range of every pixel (cast/range_caster.h):
-//     SectorPlan      divides a perspective image into sectors of vertical columns (cast/view_sector.h),
+//     SectorPlan      divides a perspective image into sectors of vertical columns (columns/view_sector.h),
 //     ColumnBatch     hands neighbouring columns to threads (cast/column_batch.h),
 //     ColumnWalk      leads a group of columns over the tiles from near to far (cast/column_walk.h),
 //     walk_grid()     resolves rows at the edges of one tile's posts (columns/columns.h),

@@ -1,6 +1,7 @@
 #include "vpe/voxel/ray_request.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/vec3.hpp>
 
 #include "lod/options.h"
@@ -24,6 +25,13 @@ VolumeForm volume_form(const core::SettingsValues& values) {
   return form;
 }
 
+// Returns true if pixels of the image may have the ranges of the nearest columns.
+bool has_nearest(const core::DrawRequest& request) {
+  const core::RayMode mode = request.settings.ray_mode;
+  return request.view.projection == core::Projection::kPerspective &&
+         (mode == core::RayMode::kExact || mode == core::RayMode::kMultires);
+}
+
 }  // namespace
 
 bool is_volume_mode(core::RayMode mode) {
@@ -38,6 +46,7 @@ RangeOptions for_hints(RangeOptions options, double downsampling) {
   // Volumes are made of the same tiles.
   if (options.method == RangeOptions::Method::kVolume) options.method = RangeOptions::Method::kColumns;
   options.discrete = {};
+  options.sectors = {};
   options.cell_px /= downsampling;
   return options;
 }
@@ -62,8 +71,21 @@ RangeOptions range_options(const core::DrawRequest& request, double planet_radiu
   // Coarsening, the price of speed, acts on the cells.
   if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
     options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
+  if (options.method == RangeOptions::Method::kColumns)
+    options.sectors = {takes_nearest(request), request.settings.ray_spacing_px};
   options.control = lod::level_control(request, planet_radius_m);
   return options;
+}
+
+bool takes_nearest(const core::DrawRequest& request) {
+  const core::SettingsValues& values = request.settings;
+  if (!has_nearest(request)) return false;
+  return values.ray_sample == core::RaySample::kNearest ||
+         (values.ray_sample == core::RaySample::kAuto && values.samples > 1 && request.want_colour);
+}
+
+double rise_px(double distance_px, double steepest_slope) {
+  return distance_px * std::hypot(1.0, steepest_slope);
 }
 
 std::optional<SmoothForm> smooth_form(const core::DrawRequest& request) {
@@ -120,6 +142,11 @@ std::string why_not(const core::DrawRequest& request) {
         return "rays.columns=lines has one ray in a pixel: set rays.vertical=1, or rays.columns=sectors";
     }
   }
+  if (request.settings.ray_sample == core::RaySample::kNearest && !has_nearest(request))
+    return request.view.projection == core::Projection::kPerspective
+               ? "rays.sample=nearest is for rays.mode=exact and multires: take one of them, or set rays.sample=auto"
+               : "rays.sample=nearest is for perspective images, as pixels of a panorama have columns of their own: set "
+                 "rays.sample=auto";
   if (request.settings.ray_fovea) {
     if (request.settings.ray_mode != core::RayMode::kMultires)
       return "rays.fovea thins the rays of rays.mode=multires only: add --set rays.mode=multires, or set "

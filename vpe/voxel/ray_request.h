@@ -34,6 +34,15 @@ std::string_view multires_control(const core::DrawRequest& request);
 // with the request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
 RangeOptions range_options(const core::DrawRequest& request, double planet_radius_m);
 
+// Returns true if pixels of a request's image have the ranges of the nearest columns (rays.sample): perspective images of modes
+// exact and multires. With rays.sample=auto those of several samples a pixel, but not ranges without colours, which are
+// those of the pixels' centres.
+bool takes_nearest(const core::DrawRequest& request);
+
+// Returns by how much ground may rise over a distance in the image: the largest distance from a point beside a ray, so far away
+// from where the ray meets the ground, to the ground above or below that point. `steepest_slope` bounds the tangent of its slope.
+double rise_px(double distance_px, double steepest_slope);
+
 // Returns true for rays.mode=volume and boundary, which cast terrain volumes.
 bool is_volume_mode(core::RayMode mode);
 

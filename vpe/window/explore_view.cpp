@@ -33,6 +33,14 @@ core::View sized(core::View view, const core::RgbImage& image) {
   return view;
 }
 
+// Returns true if an image may have the ranges of the nearest columns while its camera moves (rays.sample=auto).
+bool may_take_nearest(const core::DrawRequest& request) {
+  const core::RayMode mode = request.settings.ray_mode;
+  return request.settings.ray_sample == core::RaySample::kAuto &&
+         request.view.projection == core::Projection::kPerspective &&
+         (mode == core::RayMode::kExact || mode == core::RayMode::kMultires);
+}
+
 }  // namespace
 
 // Returns all that images depend on besides camera and settings.
@@ -120,9 +128,12 @@ void ExploreWindow::request_image() {
                         request.draw.settings.ray_mode != core::RayMode::kMultires &&
                         request.draw.settings.ray_mode != core::RayMode::kDiscrete;
   if (is_exact) request.draw.coarsening = 1;
+  const bool is_nearest = request.backend == core::Backend::kRay &&
+                          live_.state() == lod::RefinementState::kMoving && may_take_nearest(request.draw);
+  if (is_nearest) request.draw.settings.ray_sample = core::RaySample::kNearest;
   const ImageRequest drawn = setup_.as_drawn ? setup_.as_drawn(request) : request;
   // Tolerances are in pixels of the screen, also where the image has fewer.
-  request.is_full = next->is_full;
+  request.is_full = next->is_full && !is_nearest;
   request.px_per_screen_px = next->side;
   request.draw.settings.lod_tolerance_px *= next->side;
   request.draw.settings.ray_cell_px *= next->side;

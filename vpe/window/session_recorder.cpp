@@ -57,11 +57,13 @@ std::string SessionRecorder::stop(double now_s) {
 namespace {
 
 // Returns the settings of an image. Rays that keep to the tolerance because nobody named them have another mode than
-// the session's, and only with that mode does a replay draw the same image.
+// the session's, and those of a moving camera other samples; only with these does a replay draw the same image.
 core::Settings settings_of(const ImageRequest& drawn, const explore::Session& session) {
   core::Settings settings = session.settings();
-  if (drawn.backend != core::Backend::kRay || drawn.draw.settings.ray_mode == settings.values().ray_mode)
-    return settings;
+  if (drawn.backend != core::Backend::kRay) return settings;
+  if (drawn.draw.settings.ray_sample != settings.values().ray_sample)
+    (void)settings.set("rays.sample", "nearest");
+  if (drawn.draw.settings.ray_mode == settings.values().ray_mode) return settings;
   (void)settings.set("rays.mode", "multires");
   (void)settings.set("rays.cell", base::format_number(drawn.draw.settings.ray_cell_px));
   return settings;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/bench/figures/ray_figures.h"
-#include "vpe/voxel/cast/view_sector.h"
+#include "vpe/voxel/columns/view_sector.h"
 
 namespace bench {
 

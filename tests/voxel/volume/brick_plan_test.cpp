@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "tests/support/support.h"
-#include "vpe/voxel/cast/brick_store.h"
+#include "vpe/voxel/volume/brick_store.h"
 #include "vpe/voxel/volume/terrain_volume.h"
 
 namespace vpe::voxel {

@@ -53,6 +53,7 @@ void state(const warp::CarriedImage& image, const core::Certificate& first, core
   larger(&core::Certificate::quantisation_px);
   larger(&core::Certificate::shift_bound_px);
   larger(&core::Certificate::thinning_px);
+  larger(&core::Certificate::sample_distance_px);
   larger(&core::Certificate::smoothing_m);
   larger(&core::Certificate::smoothing_px);
   larger(&core::Certificate::corner_stretch);

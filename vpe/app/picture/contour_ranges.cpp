@@ -31,6 +31,8 @@ std::optional<core::DrawRequest> contour_request(const core::DrawRequest& reques
   const bool has_cells = tolerance_px >= core::RayLimits::kLeastCell_px;
   settings.ray_mode = has_cells ? core::RayMode::kMultires : core::RayMode::kExact;
   settings.ray_fovea = usual.ray_fovea;
+  settings.ray_sample = core::RaySample::kPixel;
+  settings.ray_spacing_px = usual.ray_spacing_px;
   settings.ray_cell_px = std::min(tolerance_px, core::RayLimits::kMostCell_px);
   finer.want_range = true;
   finer.want_colour = false;

@@ -206,6 +206,17 @@ const KeyRegistry<SettingsValues>& registry() {
       {"rays.cell", Declare::number<&V::ray_cell_px>(RayLimits::kLeastCell_px, RayLimits::kMostCell_px), "px",
        "backend ray, mode multires: largest distance in the image between a cell and the surface; larger: "
        "faster"},
+      {"rays.sample",
+       Declare::choice<&V::ray_sample>({word("auto", RaySample::kAuto), word("pixel", RaySample::kPixel),
+                                        word("nearest", RaySample::kNearest)}),
+       "",
+       "backend ray, modes exact and multires, perspective: pixels have their own ray, or that of the nearest column "
+       "(nearest: faster, up to half of rays.spacing away); auto: nearest with several samples and while the camera of "
+       "a window moves"},
+      {"rays.spacing",
+       Declare::number<&V::ray_spacing_px>(RayLimits::kLeastSpacing_px, RayLimits::kMostSpacing_px), "px",
+       "backend ray, modes exact and multires, perspective: largest distance between columns; larger: faster, misses "
+       "wider ridges"},
       {"rays.fovea",
        Declare::number_or_word<&V::ray_fovea>(RayLimits::kLeastFovea, RayLimits::kMostFovea, "off"), "",
        "backend ray, mode multires, perspective: share of the image's sides, about its middle, that has a ray for "

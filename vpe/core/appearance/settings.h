@@ -51,6 +51,13 @@ enum class RayColumns {
   kLines,    // parallel lines of pixels, each taken as a vertical plane
 };
 
+// The ray whose range a pixel of a perspective image has with RayMode::kExact and kMultires.
+enum class RaySample {
+  kAuto,   // kNearest where images have several samples a pixel and in windows whose camera moves, else kPixel
+  kPixel,  // the pixel's own ray
+  kNearest,  // that of the nearest column
+};
+
 // The densities of a volume with RayMode::kVolume and kBoundary.
 enum class RayVolumeFilter {
   kNone,      // full or empty
@@ -60,12 +67,14 @@ enum class RayVolumeFilter {
 
 enum class Occlusion { kAuto, kOff, kOn };
 
-// Limits of rays.cell, rays.ratio, rays.fovea and rays.volume.step.
+// Limits of rays.cell, rays.ratio, rays.spacing, rays.fovea and rays.volume.step.
 struct RayLimits {
   static constexpr double kLeastCell_px = 1.0 / 64;
   static constexpr double kMostCell_px = 64;
   static constexpr double kLeastRatio = 1.0 / 16;
   static constexpr double kMostRatio = 64;
+  static constexpr double kLeastSpacing_px = 0.25;
+  static constexpr double kMostSpacing_px = 4;
   static constexpr double kLeastFovea = 0.05;
   static constexpr double kMostFovea = 0.95;
   static constexpr double kLeastVolumeStep = 0.05;
@@ -104,6 +113,10 @@ struct SettingsValues : Appearance, Overlays {
   RayPatch ray_patch = RayPatch::kBicubic;
   // RayMode::kMultires: largest distance between a cell and the surface, in the image. Smaller: finer, slower.
   double ray_cell_px = 1;
+  // RayMode::kExact, kMultires, perspective: kNearest is faster, and pixels show rays up to half a spacing away.
+  RaySample ray_sample = RaySample::kAuto;
+  // RayMode::kExact, kMultires, perspective: distance of columns in the image. Smaller: finds narrower ridges, slower.
+  double ray_spacing_px = 1;
   // RayMode::kMultires, perspective: the share of each side of the image, about its middle, that has a ray for each
   // pixel; the rest has half as many columns and rows. Smaller: faster, less is sharp. nullopt: all of the image.
   std::optional<double> ray_fovea;

@@ -1,19 +1,37 @@
 #include "vpe/voxel/cast/column_batch.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <memory>
 
 namespace vpe::voxel {
+
+namespace {
+
+// Returns how many columns lie before a row's first whole cache line, where all rows begin alike and are written past the
+// caches. Lines that are written in two parts take several times as long.
+int unaligned_columns(const ColumnBatch& batch) {
+  constexpr std::size_t kLine = 64;
+  if (!batch.stream || static_cast<std::size_t>(std::abs(batch.stride)) * sizeof(float) % kLine != 0) return 0;
+  const std::size_t past = reinterpret_cast<std::uintptr_t>(batch.out) % kLine;
+  return static_cast<int>((kLine - past) % kLine / sizeof(float));
+}
+
+}  // namespace
 
 void Scratch::prepare(int rows, int group_count) {
   const auto count = static_cast<std::size_t>(rows);
   if (count <= prepared_rows) return;
   prepared_rows = count;
   const auto used = static_cast<std::size_t>(group_count);
-  buffers.assign(2 * used * count, LaneFloats{});
+  // Where half of the lanes are used, a row's start and gain are one cache line.
+  const bool is_half = column_lanes() <= kMaxLanes / 2;
+  const std::size_t per_group = is_half ? count : 2 * count;
+  buffers.assign(per_group * used, LaneFloats{});
   for (std::size_t g = 0; g < used; ++g) {
-    groups[g].start = buffers[2 * g * count].lane;
-    groups[g].gain = buffers[(2 * g + 1) * count].lane;
+    groups[g].start = buffers[g * per_group].lane;
+    groups[g].gain = is_half ? groups[g].start + kMaxLanes / 2 : buffers[g * per_group + count].lane;
   }
 }
 
@@ -30,19 +48,23 @@ void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, 
   struct Task {
     const ColumnBatch* batch;
     int begin;
+    int columns;
   };
   std::vector<Task> tasks;
   int most_rows = 0;
   for (const ColumnBatch& batch : batches) {
     most_rows = std::max(most_rows, batch.rows.count);
-    for (int begin = 0; begin < batch.columns; begin += task_columns) tasks.push_back({&batch, begin});
+    const int first = std::min(unaligned_columns(batch), batch.columns);
+    if (first > 0) tasks.push_back({&batch, 0, first});
+    for (int begin = first; begin < batch.columns; begin += task_columns)
+      tasks.push_back({&batch, begin, std::min(task_columns, batch.columns - begin)});
   }
   pool.run(tasks.size(), [&](std::size_t t) {
     const ScratchPool::Lease scratch = scratches.acquire();
     scratch->prepare(most_rows, task_columns / lanes);
     const ColumnBatch& batch = *tasks[t].batch;
     const int begin = tasks[t].begin;
-    const int columns = std::min(task_columns, batch.columns - begin);
+    const int columns = tasks[t].columns;
     int groups = 0;
     float lowest = static_cast<float>(batch.rows.count);
     float highest = 0;

@@ -44,15 +44,15 @@ class GroupWalk : public HeightGridSource {
       const auto root = static_cast<lod::TileTree::Index>(f);
       if (done() || hidden(root)) continue;
       set_face(azimuth, static_cast<mars::Face>(f));
-      visit(root, {-1, 1, -1, 1});
+      visit(root, root, {-1, 1, -1, 1});
     }
   }
 
   const HeightGridLines<float>& lines(LineFamily family) override {
-    return tiles_.grids(tile_, family)->lines(grid_i_, grid_j_);
+    return tiles_.grids(tile_, posts_of_, family)->lines(grid_i_, grid_j_);
   }
   const HeightGridLines<double>& exact_lines(LineFamily family) override {
-    return tiles_.exact_grids(tile_, family)->lines(grid_i_, grid_j_);
+    return tiles_.exact_grids(tile_, posts_of_, family)->lines(grid_i_, grid_j_);
   }
 
  private:
@@ -115,11 +115,13 @@ class GroupWalk : public HeightGridSource {
     }
   }
 
-  void visit(lod::TileTree::Index tile, const Cell& cell) {
+  void visit(lod::TileTree::Index tile, lod::TileTree::Index parent, const Cell& cell) {
     if (done() || hidden(tile) || outside(cell)) return;
     const lod::TileInfo& info = tree_[tile];
     if (walk_.ends_at(tile)) {
       tile_ = tile;
+      posts_of_ = walk_.has_parents_posts(tile) ? parent : tile;
+      intervals_ = walk_.intervals(tile);
       walk_.mark_used(tile);
       const int per_side = grids_per_side(info.key.level, tree_.shape().intervals());
       visit_grids(cell, 0, 0, per_side, per_side);
@@ -129,7 +131,7 @@ class GroupWalk : public HeightGridSource {
     const double um = walk_.middle_line(info.key.level, info.key.i);
     const double vm = walk_.middle_line(info.key.level, info.key.j);
     quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
-      visit(first + (east ? 1U : 0U) + (north ? 2U : 0U), part);
+      visit(first + (east ? 1U : 0U) + (north ? 2U : 0U), tile, part);
     });
   }
 
@@ -139,7 +141,7 @@ class GroupWalk : public HeightGridSource {
     if (size == 1) {
       grid_i_ = i;
       grid_j_ = j;
-      const int n = tree_.shape().intervals() / per_side;
+      const int n = intervals_ / per_side;
       const HeightGridFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
       if (walk_.rule_.is_discrete) {
         walk_grid_discretely(frame, *this, walk_.camera_, up_, rows_, walk_.blend_from_m(tile_), group_);
@@ -168,6 +170,8 @@ class GroupWalk : public HeightGridSource {
   glm::dvec3 side_[2]{};
   bool wedge_ = false;
   lod::TileTree::Index tile_ = 0;
+  lod::TileTree::Index posts_of_ = 0;
+  int intervals_ = 0;
   int grid_i_ = 0;
   int grid_j_ = 0;
 };

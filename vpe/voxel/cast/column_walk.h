@@ -23,6 +23,9 @@ namespace vpe::voxel {
 // before format 1.2 do not record this error; there, tiles are fine enough whose posts are at most cell_px
 // apart in the image.
 //
+// Where a tile is not fine enough as a whole, each quarter of it is by itself, by its own distance: the child that
+// covers it is then cast with the tile's posts, with half as many lines as with its own.
+//
 // Level control changes that as it changes the selection of triangles (lod/control.h): with the metric kError a
 // tile's error, or the distance of its posts, counts 2^levels times; with the metric kDistance a tile is fine
 // enough from the wanted level on, whatever its error.
@@ -58,14 +61,21 @@ class ColumnWalk {
   bool is_discrete() const { return rule_.is_discrete; }
   const lod::TileTree& tree() const { return tree_; }
 
-  // Returns true if the tile's own posts are cast, because it is fine enough or the finest there; or those of an
-  // ancestor in their place (tile_fallbacks.h).
+  // Returns true if nothing below the tile is cast: its own posts are, because it is fine enough or the finest
+  // there; or its parent's, because they are fine enough over the tile; or those of an ancestor in their place
+  // (tile_fallbacks.h).
   bool ends_at(lod::TileTree::Index tile) const;
+  // Return, for a tile that ends_at() has returned true for: whether its parent's posts are cast, and the intervals
+  // of what is cast along the tile's side.
+  bool has_parents_posts(lod::TileTree::Index tile) const;
+  int intervals(lod::TileTree::Index tile) const {
+    return has_parents_posts(tile) ? tree_.shape().intervals() / 2 : tree_.shape().intervals();
+  }
   // Counts a tile among those that casts have used.
   void mark_used(lod::TileTree::Index tile) const;
   // Returns a lower bound of the distance from the camera to the tile's posts.
   double least_distance_m(lod::TileTree::Index tile) const;
-  // Returns the tile below the camera that is cast.
+  // Returns the tile whose posts are cast below the camera.
   lod::TileTree::Index below_camera() const;
 
   // Returns the radius of the highest ground, as exaggerated.
@@ -98,12 +108,17 @@ class ColumnWalk {
   double reach_m(lod::TileTree::Index tile) const;
   // Returns the largest screen-space error that a geometric error at this tile can cause.
   double in_image_px(double geometric_error_m, lod::TileTree::Index tile) const;
+  lod::TileTree::Index parent(lod::TileTree::Index tile) const;  // of a tile that is no root
   // Returns how far the samples of the discrete walk are from the tile's posts as a grid.
   double voxel_error_m(lod::TileTree::Index tile) const;
   // Returns the range from which on voxels of the tile's own go over to wider ones; 0 if they never do.
   double blend_from_m(lod::TileTree::Index tile) const;
-  // Returns true if the tile is fine enough by the rule, whatever is there.
-  bool is_fine(lod::TileTree::Index tile) const;
+  // Returns true if the posts of `posts_of`, the tile itself or its parent, are fine enough over the tile by the
+  // rule, whatever is there.
+  bool is_fine(lod::TileTree::Index tile, lod::TileTree::Index posts_of) const;
+  // Returns true if the tile is to be cast with its parent's posts. Expects that the parent is not fine enough as a
+  // whole.
+  bool takes_parents_posts(lod::TileTree::Index tile) const;
 
   // Returns an upper bound of the slope tan(e) of all rays that meet the tile.
   float slope_bound(lod::TileTree::Index tile) const;
@@ -115,8 +130,8 @@ class ColumnWalk {
   double highest_m_;
   CellRule rule_;
   TileFallbacks* fallbacks_;
-  // Computed on first use; NaN and 0 before. What is stored first stays. ends_ also marks the tiles that were
-  // used.
+  // Computed on first use; NaN and 0 before. What is stored first stays. ends_ also tells whose posts are cast,
+  // and marks the tiles that were used.
   mutable std::vector<std::atomic<float>> bounds_;
   mutable std::vector<std::atomic<std::uint8_t>> ends_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 
 #include "mars/geodesy/cube.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::uint8_t kKnown = 1;
 constexpr std::uint8_t kYes = 2;
 constexpr std::uint8_t kUsed = 4;
+constexpr std::uint8_t kParentsPosts = 8;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
@@ -115,12 +117,16 @@ double ColumnWalk::in_image_px(double geometric_error_m, lod::TileTree::Index ti
   return geometric_error_m * rule_.focal_px / least_distance_m(tile);
 }
 
-bool ColumnWalk::is_fine(lod::TileTree::Index tile) const {
-  const lod::TileInfo& info = tree_[tile];
+lod::TileTree::Index ColumnWalk::parent(lod::TileTree::Index tile) const {
+  return static_cast<lod::TileTree::Index>(tree_.find(lod::parent(tree_[tile].key)) - tree_.tiles().data());
+}
+
+bool ColumnWalk::is_fine(lod::TileTree::Index tile, lod::TileTree::Index posts_of) const {
+  const lod::TileInfo& info = tree_[posts_of];
   double factor = 1;
   double cell_px = rule_.cell_px;
   if (rule_.control != nullptr) {
-    const cull::BoundingRegion region = tree_.region(tile, exaggeration_, posts_error_m(tile));
+    const cull::BoundingRegion region = tree_.region(tile, exaggeration_, posts_error_m(posts_of));
     const lod::ControlTerms terms = lod::control_terms(
         *rule_.control, rule_.centre, {cull::bounding_hexahedron(region), region.rect, least_distance_m(tile)});
     if (rule_.control->metric == core::LodMetric::kDistance)
@@ -129,23 +135,46 @@ bool ColumnWalk::is_fine(lod::TileTree::Index tile) const {
     cell_px *= lod::degrade_factor(*rule_.control, terms.degrade_weight);
   }
   if (info.posts_terms.known() && !rule_.is_discrete)
-    return factor * in_image_px(measured_error_m(tile), tile) <= cell_px;
-  return factor * spacing_m(tile) * rule_.focal_px <= cell_px * least_distance_m(tile);
+    return factor * in_image_px(measured_error_m(posts_of), tile) <= cell_px;
+  return factor * spacing_m(posts_of) * rule_.focal_px <= cell_px * least_distance_m(tile);
+}
+
+// Level control is that of whole tiles, as --explain-lod states it. About the foot of a low camera lines are read in
+// double (needs_exact()), for which the parent's posts, kept in floats, are not exact enough; grids there are nearer
+// to the camera than this. A grid must have an even number of intervals.
+bool ColumnWalk::takes_parents_posts(lod::TileTree::Index tile) const {
+  const lod::TileKey& key = tree_[tile].key;
+  if (key.level == 0 || rule_.is_discrete || rule_.control != nullptr) return false;
+  const int n = tree_.shape().intervals();
+  if (n / grids_per_side(key.level, n) < 2) return false;
+  const lod::TileTree::Index above = parent(tile);
+  const double exact_m = 2 * kExactLines * reach_m(above);
+  const bool is_low = camera_.distance_m - camera_.ground_m < exact_m;
+  return tree_[above].posts_terms.known() && !(is_low && least_distance_m(tile) <= exact_m) &&
+         is_fine(tile, above) && (fallbacks_ == nullptr || !fallbacks_->prefers_children(above));
+}
+
+bool ColumnWalk::has_parents_posts(lod::TileTree::Index tile) const {
+  return (ends_[tile].load(std::memory_order_relaxed) & kParentsPosts) != 0;
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
-  if (!info.has_children) return true;
-  if (!(rule_.cell_px > 0)) return false;
+  if (!(rule_.cell_px > 0)) return !info.has_children;
   const unsigned known = ends_[tile].load(std::memory_order_relaxed);
   if ((known & kKnown) != 0) return (known & kYes) != 0;
-  bool fine = is_fine(tile);
-  if (fine && fallbacks_ != nullptr && fallbacks_->prefers_children(tile)) fine = false;
+  std::uint8_t found = kKnown;
+  if (takes_parents_posts(tile)) {
+    found |= kYes | kParentsPosts;
+  } else if (!info.has_children ||
+             (is_fine(tile, tile) && (fallbacks_ == nullptr || !fallbacks_->prefers_children(tile)))) {
+    found |= kYes;
+  }
   // Another thread may have found the tile there, or not, a moment before.
   std::uint8_t before = ends_[tile].load(std::memory_order_relaxed);
   while ((before & kKnown) == 0) {
-    const auto after = static_cast<std::uint8_t>(before | (fine ? kKnown | kYes : kKnown));
-    if (ends_[tile].compare_exchange_weak(before, after, std::memory_order_relaxed)) return fine;
+    const auto after = static_cast<std::uint8_t>(before | found);
+    if (ends_[tile].compare_exchange_weak(before, after, std::memory_order_relaxed)) return (found & kYes) != 0;
   }
   return (before & kYes) != 0;
 }
@@ -159,7 +188,7 @@ lod::TileTree::Index ColumnWalk::below_camera() const {
     const bool north = place.v >= middle_line(key.level, key.j);
     tile = tree_.first_child(tile) + (east ? 1U : 0U) + (north ? 2U : 0U);
   }
-  return tile;
+  return has_parents_posts(tile) ? parent(tile) : tile;
 }
 
 double ColumnWalk::spacing_m(lod::TileTree::Index tile) const {
@@ -207,10 +236,17 @@ TileUsage ColumnWalk::usage() const {
   // Ground that is nowhere steeper than a slope is no nearer to a camera above it than this.
   const double clear_m =
       (camera_.distance_m - camera_.ground_m) / std::hypot(1.0, tree_.steepest_slope(exaggeration_));
+  // Quarters count for the tile whose posts they are.
+  std::map<lod::TileTree::Index, double> least_m;
   for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
     if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
+    const double distance_m = least_distance_m(tile);
+    const auto [at, is_new] = least_m.try_emplace(has_parents_posts(tile) ? parent(tile) : tile, distance_m);
+    if (!is_new) at->second = std::min(at->second, distance_m);
+  }
+  for (const auto& [tile, nearest_m] : least_m) {
     const lod::TileTree::Index source = fallbacks_ != nullptr ? fallbacks_->source_of(tile) : tile;
-    TileUse use{tile, source, least_distance_m(tile)};
+    TileUse use{tile, source, nearest_m};
     use.geometric_error_m =
         (source == tile ? posts_error_m(tile) : fallback_error_m(tile, source)) + voxel_error_m(source);
     if (use.geometric_error_m != 0) {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <limits>
 #include <stdexcept>
 
+#include "vpe/voxel/cast/nearest_samples.h"
 #include "vpe/voxel/cast/sector_batch.h"
-#include "vpe/voxel/cast/view_sector.h"
 #include "vpe/voxel/columns/pixel_lines.h"
+#include "vpe/voxel/columns/view_sector.h"
 
 namespace vpe::voxel {
 
@@ -20,97 +20,6 @@ constexpr int kNearestRows = 32;
 std::size_t index_of(int row, int width, int x) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
-
-// Copies the nearest samples to the rays of an image's rows.
-class NearestSamples {
- public:
-  NearestSamples(const SectorPlan& plan, const SectorSamples& samples, const core::SubRectangle& part, int rays)
-      : plan_(plan), samples_(samples), part_(part), rays_(rays) {}
-
-  // Sets the ranges of all rays of one row of pixels, counted from the top of the drawn part: a row for each ray.
-  void get(int pixel_row, float* out) const {
-    const SectorPlan::Span span = upright_pixels(pixel_row);
-    for (int ray = 0; ray < rays_; ++ray, out += part_.width) {
-      const int row = rays_ * pixel_row + ray;
-      beside(row, 0, span.begin, out);
-      upright(row, span.begin, span.end, out);
-      beside(row, span.end, part_.width, out);
-    }
-  }
-
- private:
-  double x_of(int x) const { return rays_ * (part_.x + x + 0.5); }
-  // Returns the side of V of a pixel's centre; all rays of the pixel belong to its sector.
-  SectorPlan::Side side(int x, int pixel_row) const {
-    return plan_.side_of(x_of(x), rays_ * (part_.y + pixel_row + 0.5));
-  }
-
-  // Returns the pixels of a row in an upright sector; empty at the vanishing point if there is none.
-  SectorPlan::Span upright_pixels(int pixel_row) const {
-    // Those of the ray at or below the centre are at most a pixel off.
-    const SectorPlan::Span near =
-        plan_.upright_span(std::min(rays_ * pixel_row + rays_ / 2, rays_ * part_.height - 1));
-    const auto is_before = [&](int x) {
-      const SectorPlan::Side at = side(x, pixel_row);
-      return !at.upright && !at.forward;
-    };
-    SectorPlan::Span span{std::clamp(near.begin / rays_, 0, part_.width), 0};
-    while (span.begin > 0 && !is_before(span.begin - 1)) --span.begin;
-    while (span.begin < part_.width && is_before(span.begin)) ++span.begin;
-    span.end = std::clamp(near.end / rays_, span.begin, part_.width);
-    while (span.end > span.begin && !side(span.end - 1, pixel_row).upright) --span.end;
-    while (span.end < part_.width && side(span.end, pixel_row).upright) ++span.end;
-    return span;
-  }
-
-  const float* samples_of(const ViewSector& sector) const {
-    return samples_[static_cast<std::size_t>(&sector - plan_.sectors().data())].data();
-  }
-
-  void upright(int row, int begin, int end, float* out) const {
-    if (begin >= end) return;
-    const ViewSector* sector = plan_.sector_of(side(begin, row / rays_));
-    if (sector == nullptr) return none(begin, end, out);
-    const int step = std::clamp(rays_ * part_.y + row - sector->first_step, 0, sector->steps - 1);
-    const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
-    const double first = (map.scale * x_of(0) + map.shift - sector->first_line) / sector->spacing + 0.5;
-    const double rate = map.scale * rays_ / sector->spacing;
-    const float* const from = samples_of(*sector) + std::ptrdiff_t{step} * sector->lines;
-    const double last = sector->lines - 1;
-    const auto [low, high] = std::minmax(first + rate * begin, first + rate * (end - 1));
-    if (low >= 0 && high < last + 1) {
-      for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(first + rate * x)];
-    } else {
-      for (int x = begin; x < end; ++x)
-        out[x] = from[static_cast<int>(std::clamp(first + rate * x, 0.0, last))];
-    }
-  }
-
-  void beside(int row, int begin, int end, float* out) const {
-    if (begin >= end) return;
-    const ViewSector* sector = plan_.sector_of(side(begin, row / rays_));
-    if (sector == nullptr) return none(begin, end, out);
-    const float* const from = samples_of(*sector);
-    const double y = rays_ * part_.y + row + 0.5 - sector->origin;
-    for (int x = begin; x < end; ++x) {
-      const int step = std::clamp(rays_ * (part_.x + x) + rays_ / 2 - sector->first_step, 0, sector->steps - 1);
-      const auto k = static_cast<std::size_t>(step);
-      const double line =
-          static_cast<double>(sector->line_scale[k]) * y + static_cast<double>(sector->line_shift[k]) + 0.5;
-      out[x] = from[std::ptrdiff_t{step} * sector->lines +
-                    static_cast<int>(std::clamp(line, 0.0, sector->lines - 1.0))];
-    }
-  }
-
-  static void none(int begin, int end, float* out) {
-    std::fill(out + begin, out + end, std::numeric_limits<float>::infinity());
-  }
-
-  const SectorPlan& plan_;
-  const SectorSamples& samples_;
-  core::SubRectangle part_;
-  int rays_;
-};
 
 void cast_sectors(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
                   base::ThreadPool& pool, SectorSamples& samples, std::span<float> range_m) {
@@ -129,7 +38,7 @@ void cast_sectors(const core::View& view, const ColumnWalk& walk, int rays, Scra
   pool.run(static_cast<std::size_t>((part.height + kNearestRows - 1) / kNearestRows), [&](std::size_t task) {
     const int first = static_cast<int>(task) * kNearestRows;
     for (int row = first; row < std::min(first + kNearestRows, part.height); ++row)
-      nearest.get(row, range_m.data() + index_of(rays * row, part.width, 0));
+      nearest.get(row, 0, part.width, range_m.data() + index_of(rays * row, part.width, 0));
   });
 }
 

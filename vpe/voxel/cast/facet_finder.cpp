@@ -44,8 +44,13 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
     ++level;
     return (east ? 1U : 0U) + (north ? 2U : 0U);
   };
-  while (!walk_.ends_at(tile)) tile = tree.first_child(tile) + halve();
+  lod::TileTree::Index parent = tile;
+  while (!walk_.ends_at(tile)) {
+    parent = tile;
+    tile = tree.first_child(tile) + halve();
+  }
   walk_.mark_used(tile);
+  const lod::TileTree::Index posts_of = walk_.has_parents_posts(tile) ? parent : tile;
   const lod::TileKey& key = tree[tile].key;
   const int per_side = grids_per_side(key.level, tree.shape().intervals());
   for (int k = 1; k < per_side; k *= 2) halve();
@@ -54,7 +59,7 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
   facets_.face = place.face;
   HeightGridFrame& f = facets_.frame;
-  f.intervals = tree.shape().intervals() / per_side;
+  f.intervals = walk_.intervals(tile) / per_side;
   f.u0 = u0;
   f.du = (u1 - u0) / f.intervals;
   f.v0 = v0;
@@ -67,10 +72,10 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   facets_.exact_lines = nullptr;
   if (exact) {
     facets_.family = LineFamily::kColumns;
-    exact_held_ = tiles_.exact_grids(tile, facets_.family);
+    exact_held_ = tiles_.exact_grids(tile, posts_of, facets_.family);
     facets_.exact_lines = &exact_held_->lines(i, j);
   } else {
-    held_ = tiles_.any_grids(tile);
+    held_ = tiles_.any_grids(tile, posts_of);
     facets_.family = held_->family();
     facets_.lines = &held_->lines(i, j);
   }

@@ -39,13 +39,13 @@ void HeightGridStore::change_planet(std::shared_ptr<const paging::PlanetFile> pl
   any_failed_ = false;
 }
 
-HeightGridStore::Key HeightGridStore::key(Tile tile, Tile posts_of, LineFamily family,
-                                          double exaggeration) const {
+HeightGridStore::Key HeightGridStore::key(Tile tile, Tile posts_of, LineFamily family, double exaggeration,
+                                          bool is_half) const {
   const lod::TileKey& of = planet_->tree()[tile].key;
   const std::uint64_t version = planet_->version(of);
-  if (posts_of == tile) return {{of, version}, of.level, version, family, exaggeration};
+  if (posts_of == tile) return {{of, version}, of.level, version, is_half, family, exaggeration};
   const lod::TileKey& posts = planet_->tree()[posts_of].key;
-  return {{of, version}, posts.level, planet_->version(posts), family, exaggeration};
+  return {{of, version}, posts.level, planet_->version(posts), is_half, family, exaggeration};
 }
 
 template <typename T>
@@ -111,27 +111,39 @@ HeightGridStore::Pointer<float> HeightGridStore::held_grids(Tile tile, double ex
 
 template <typename T>
 HeightGridStore::Pointer<T> HeightGridStore::fallback(Cache<T>& cache, Tile tile, Tile coarser,
-                                                      LineFamily family, double exaggeration) const {
-  return get(cache, key(tile, coarser, family, exaggeration), [&] {
+                                                      LineFamily family, double exaggeration,
+                                                      bool is_half) const {
+  return get(cache, key(tile, coarser, family, exaggeration, is_half), [&] {
     const lod::TileTree& tree = planet_->tree();
     const lod::TileInfo& info = tree[tile];
+    const int intervals = tree.shape().intervals();
     return std::make_shared<const TileHeightGrids<T>>(
         *any_grids(coarser, exaggeration),
-        FallbackTile{info.key, tree[coarser].key, tree.shape().intervals(), info.min_height_m,
-                     info.max_height_m},
+        FallbackTile{info.key, tree[coarser].key, is_half ? intervals / 2 : intervals, info.min_height_m,
+                     info.max_height_m, intervals},
         planet_->radius_m(), exaggeration, family);
   });
 }
 
 HeightGridStore::Pointer<float> HeightGridStore::fallback_grids(Tile tile, Tile coarser, LineFamily family,
                                                                 double exaggeration) const {
-  return fallback(grids_, tile, coarser, family, exaggeration);
+  return fallback(grids_, tile, coarser, family, exaggeration, false);
 }
 
 HeightGridStore::Pointer<double> HeightGridStore::exact_fallback_grids(Tile tile, Tile coarser,
                                                                        LineFamily family,
                                                                        double exaggeration) const {
-  return fallback(exact_, tile, coarser, family, exaggeration);
+  return fallback(exact_, tile, coarser, family, exaggeration, false);
+}
+
+HeightGridStore::Pointer<float> HeightGridStore::half_grids(Tile tile, Tile coarser, LineFamily family,
+                                                            double exaggeration) const {
+  return fallback(grids_, tile, coarser, family, exaggeration, true);
+}
+
+HeightGridStore::Pointer<double> HeightGridStore::exact_half_grids(Tile tile, Tile coarser, LineFamily family,
+                                                                   double exaggeration) const {
+  return fallback(exact_, tile, coarser, family, exaggeration, true);
 }
 
 std::optional<std::string> HeightGridStore::failure(Tile tile) const {
@@ -189,6 +201,42 @@ const HeightGridStore::Pointer<float>& ThreadLocalTiles::any_grids(lod::TileTree
   Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
   slot = {tile, family, std::move(found)};
   return slot.held;
+}
+
+const HeightGridStore::Pointer<float>& ThreadLocalTiles::grids(lod::TileTree::Index tile,
+                                                               lod::TileTree::Index posts_of,
+                                                               LineFamily family) {
+  if (posts_of == tile) return grids(tile, family);
+  Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
+  if (!slot.is(tile, family)) {
+    slot = {tile, family,
+            fallbacks_ != nullptr ? fallbacks_->half_grids(tile, posts_of, family)
+                                  : store_.half_grids(tile, posts_of, family, exaggeration_)};
+  }
+  return slot.held;
+}
+
+const HeightGridStore::Pointer<double>& ThreadLocalTiles::exact_grids(lod::TileTree::Index tile,
+                                                                      lod::TileTree::Index posts_of,
+                                                                      LineFamily family) {
+  if (posts_of == tile) return exact_grids(tile, family);
+  Slot<double>& slot = exact_[number(tile, family) % exact_.size()];
+  if (!slot.is(tile, family)) {
+    slot = {tile, family,
+            fallbacks_ != nullptr ? fallbacks_->exact_half_grids(tile, posts_of, family)
+                                  : store_.exact_half_grids(tile, posts_of, family, exaggeration_)};
+  }
+  return slot.held;
+}
+
+const HeightGridStore::Pointer<float>& ThreadLocalTiles::any_grids(lod::TileTree::Index tile,
+                                                                   lod::TileTree::Index posts_of) {
+  if (posts_of == tile) return any_grids(tile);
+  for (const LineFamily family : kAllFamilies) {
+    const Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
+    if (slot.is(tile, family)) return slot.held;
+  }
+  return grids(tile, posts_of, LineFamily::kColumns);
 }
 
 }  // namespace vpe::voxel

@@ -53,6 +53,11 @@ class HeightGridStore {
   Pointer<float> fallback_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
   Pointer<double> exact_fallback_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
 
+  // Return grids of `tile` with half its intervals, for the posts of its parent: from the parent if `coarser` is that, else
+  // from an ancestor that stands in for it.
+  Pointer<float> half_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
+  Pointer<double> exact_half_grids(Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
+
   // Returns why a tile could not be read before, or nullopt. Such a tile is not read again by read().
   std::optional<std::string> failure(Tile tile) const;
   // Reads a tile in a family, unless any family of it is held. Returns false and records the failure if it cannot
@@ -79,6 +84,7 @@ class HeightGridStore {
     paging::TileVersion tile;
     std::int32_t posts_level;     // of `tile`, or of the ancestor that its posts are from
     std::uint64_t posts_version;  // of that tile
+    bool is_half;                 // half_grids()
     LineFamily family;
     double exaggeration;
     bool operator==(const Key&) const = default;
@@ -87,10 +93,11 @@ class HeightGridStore {
     std::size_t operator()(const Key& k) const {
       return (paging::TileVersionHash()(k.tile) * kFamilies + static_cast<std::size_t>(k.family)) *
                  0x9e3779b97f4a7c15ULL +
-             static_cast<std::size_t>(k.posts_level) + (std::hash<double>()(k.exaggeration) ^ k.posts_version);
+             2 * static_cast<std::size_t>(k.posts_level) + (k.is_half ? 1 : 0) +
+             (std::hash<double>()(k.exaggeration) ^ k.posts_version);
     }
   };
-  Key key(Tile tile, Tile posts_of, LineFamily family, double exaggeration) const;
+  Key key(Tile tile, Tile posts_of, LineFamily family, double exaggeration, bool is_half = false) const;
   template <typename T>
   using Cache = vpe::base::LruCache<Key, TileHeightGrids<T>, KeyHash>;
   template <typename T>
@@ -98,7 +105,8 @@ class HeightGridStore {
   template <typename T, typename Make>
   Pointer<T> get(Cache<T>& cache, const Key& key, const Make& make) const;
   template <typename T>
-  Pointer<T> fallback(Cache<T>& cache, Tile tile, Tile coarser, LineFamily family, double exaggeration) const;
+  Pointer<T> fallback(Cache<T>& cache, Tile tile, Tile coarser, LineFamily family, double exaggeration,
+                      bool is_half) const;
   paging::TileHeights heights(Tile tile, double exaggeration) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -129,6 +137,13 @@ class ThreadLocalTiles {
   const Pointer<float>& grids(lod::TileTree::Index tile, LineFamily family);
   const Pointer<double>& exact_grids(lod::TileTree::Index tile, LineFamily family);
   const Pointer<float>& any_grids(lod::TileTree::Index tile);
+
+  // Return the grids of a tile with the posts of `posts_of`: of the tile itself, or of its parent
+  // (HeightGridStore::half_grids()). Which of the two must be the same in all calls.
+  const Pointer<float>& grids(lod::TileTree::Index tile, lod::TileTree::Index posts_of, LineFamily family);
+  const Pointer<double>& exact_grids(lod::TileTree::Index tile, lod::TileTree::Index posts_of,
+                                     LineFamily family);
+  const Pointer<float>& any_grids(lod::TileTree::Index tile, lod::TileTree::Index posts_of);
 
  private:
   template <typename T>

@@ -10,6 +10,7 @@
 
 #include "vpe/voxel/cast/column_batch.h"
 #include "vpe/voxel/cast/column_walk.h"
+#include "vpe/voxel/cast/fan_caster.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
 #include "vpe/voxel/cast/tile_fallbacks.h"
 
@@ -28,10 +29,13 @@ std::size_t bytes_of_share(std::size_t bytes, double share) {
 // of a pixel.
 constexpr double kLevel = 1e-8;
 
+bool is_level(const core::View& view, const glm::dvec3& up) {
+  return glm::length(view.camera.axes.up - up) <= kLevel;
+}
+
 // Returns true if the image's columns are vertical half-planes.
 bool upright(const core::View& view, const glm::dvec3& up) {
-  if (view.projection == core::Projection::kPerspective || glm::length(view.camera.axes.up - up) > kLevel)
-    return false;
+  if (view.projection == core::Projection::kPerspective || !is_level(view, up)) return false;
   if (view.projection == core::Projection::kCylinder) return true;
   // Rows beyond the zenith or the nadir look backward.
   const core::SubRectangle part = core::drawn_part(view);
@@ -158,11 +162,16 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
       } else if (is_discrete) {
         cast_discretely(view, *walk, options.discrete, scratches, pool, sectors.samples(), range_m);
       } else {
-        sectors.cast(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool, range_m,
-                     options.only);
+        sectors.cast(view, options.sectors, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr,
+                     pool, range_m, options.only);
       }
       return walk->usage();
     }
+    // A level image whose rows look backward beyond the zenith or the nadir is cast by single rays.
+    if (!is_discrete && !is_level(view, walk->camera().up) &&
+        cast_by_fan(view, *walk, scratches, options.cell_px == 0 ? &single_rays : nullptr, pool,
+                    sectors.samples(), range_m))
+      return walk->usage();
   }
   if (is_discrete) {
     std::ranges::fill(range_m, 0.0F);  // the camera is below the ground

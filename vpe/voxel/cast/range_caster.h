@@ -1,9 +1,9 @@
 // Casts range images of the reference surface.
 //
 // Stage of the pipeline (vpe/voxel/ray_renderer.h): the first one. RangeCaster chooses among three ways to
-// cast: vertical columns for panoramas of a level camera (ColumnBatch), sectors of columns and refinement for
-// perspective images (SectorCaster), and single rays for all else (paging::Surface::cast). ImagePainter colours
-// the result.
+// cast: vertical columns for panoramas of a level camera (ColumnBatch), columns and refinement for perspective images
+// (SectorCaster) and panoramas of a tilted camera (cast_by_fan()), and single rays for all else (paging::Surface::cast).
+// ImagePainter colours the result.
 //
 // Typical usage:
 //   RangeCaster caster(planet, memory_bytes);
@@ -51,10 +51,11 @@ struct RangeOptions {
   core::SubRectangle only = {};
   DiscreteForm discrete = {};  // with kDiscrete alone
   VolumeForm volume = {};      // with kVolume alone
+  SectorForm sectors = {};     // with kColumns alone, in perspective
   bool operator==(const RangeOptions&) const = default;
 };
 
-// Returns true if the view's image can be cast by columns: perspective views, and round ones of a level camera.
+// Returns true if the columns of a view are lines of its image: perspective views, and round ones of a level camera.
 bool casts_by_columns(const core::View& view);
 
 class RangeCaster {
@@ -65,13 +66,14 @@ class RangeCaster {
 
   // Writes the ranges of the view's drawn part (with kDiscrete, discrete.rays rows for each row of pixels), row by row from the top: metres from the camera to the
   // reference surface as exaggerated, infinite for the sky, 0 for a camera below the surface. Columns serve
-  // perspective views, and cylindrical and equirectangular ones whose camera is level; other views get a ray
-  // for each pixel. kDiscrete throws std::invalid_argument for these (see casts_by_columns()).
+  // perspective views, and cylindrical and equirectangular ones whose camera is level, and fans of columns most of
+  // those whose camera is tilted (fan_caster.h); other views get a ray for each pixel. kDiscrete throws std::invalid_argument for these (see casts_by_columns()).
   //
   // kVolume casts in any projection. Its usage includes how far volumes are from the reference surface.
   //
   // With cell_px 0 ranges are those of paging::Surface::cast() but for rounding: the relative error is below
-  // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts.
+  // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts. With
+  // sectors.is_nearest that holds for a ray up to sectors.distance_px() from the pixel's centre.
   //
   // Returns the tiles that columns used, the bound of their error and their steepest slope; for single rays the
   // steepest slope of the planet alone. Throws

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vpe/voxel/cast/column_batch.h"
-#include "vpe/voxel/cast/view_sector.h"
+#include "vpe/voxel/columns/view_sector.h"
 
 namespace vpe::voxel {
 

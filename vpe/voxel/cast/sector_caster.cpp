@@ -8,14 +8,13 @@
 
 #include "vpe/voxel/cast/facet_finder.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
+#include "vpe/voxel/cast/nearest_samples.h"
 #include "vpe/voxel/columns/refine.h"
 
 namespace vpe::voxel {
 
 namespace {
 
-// Distance between lines of a sector where they are farthest apart.
-constexpr double kSpacing_px = 1.0;
 constexpr int kTaskRows = 32;
 constexpr int kTaskColumns = 128;
 
@@ -133,14 +132,49 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
   beside(span.end, last_pixel);
 }
 
-void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-                        const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
-                        const core::SubRectangle& only) {
+void SectorCaster::take_nearest(const core::View& view, const SectorPlan& plan,
+                                const core::SubRectangle& pixels, const ColumnWalk& walk,
+                                ScratchPool& scratches, const SingleRays* single_rays, base::ThreadPool& pool,
+                                std::span<float> range_m) const {
+  const core::SubRectangle part = core::drawn_part(view);
+  const NearestSamples nearest(plan, samples_, part);
+  const int tasks = (pixels.height + kTaskRows - 1) / kTaskRows;
+  pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+    std::vector<int> missed;
+    const int first = pixels.y - part.y + static_cast<int>(task) * kTaskRows;
+    const int last = std::min(first + kTaskRows, pixels.y - part.y + pixels.height);
+    const int end_column = pixels.x - part.x + pixels.width;
+    for (int begin = pixels.x - part.x; begin < end_column; begin += kTaskColumns) {
+      for (int row = first; row < last; ++row) {
+        float* const out =
+            range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width);
+        missed.clear();
+        nearest.get(row, begin, std::min(begin + kTaskColumns, end_column), out, &missed);
+        for (const int x : missed) {
+          const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + row + 0.5);
+          std::optional<double> range;
+          if (single_rays != nullptr) range = single_rays->cast(view.camera.position_m, ray);
+          if (!range) {
+            const ScratchPool::Lease scratch = scratches.acquire();
+            FacetFinder finder(walk, scratch->tiles);
+            range = march(view.camera.position_m, ray, 0, walk.highest_m(), finder, walk.camera().radius_m);
+          }
+          out[x] = static_cast<float>(*range);
+        }
+      }
+    }
+  });
+}
+
+void SectorCaster::cast(const core::View& view, const SectorForm& form, const ColumnWalk& walk,
+                        ScratchPool& scratches, const SingleRays* single_rays, base::ThreadPool& pool,
+                        std::span<float> range_m, const core::SubRectangle& only) {
   const core::SubRectangle part = core::drawn_part(view);
   const core::SubRectangle pixels = only.width > 0 ? in_whole_blocks(only, part) : part;
   if (pixels.width <= 0 || pixels.height <= 0) return;
-  const SectorPlan plan(view, walk.camera().up, kSpacing_px);
+  const SectorPlan plan(view, walk.camera().up, form.spacing_px);
   cast_sectors(plan, pixels, walk, scratches, pool);
+  if (form.is_nearest) return take_nearest(view, plan, pixels, walk, scratches, single_rays, pool, range_m);
   const mars::Axes& axes = view.camera.axes;
   const double focal = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x;

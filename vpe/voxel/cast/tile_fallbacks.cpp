@@ -76,6 +76,16 @@ std::shared_ptr<const TileHeightGrids<double>> TileFallbacks::exact_grids(Tile t
   return store_.exact_grids(tile, family, exaggeration_);
 }
 
+std::shared_ptr<const TileHeightGrids<float>> TileFallbacks::half_grids(Tile tile, Tile parent,
+                                                                        LineFamily family) {
+  return store_.half_grids(tile, replacement(parent, family).value_or(parent), family, exaggeration_);
+}
+
+std::shared_ptr<const TileHeightGrids<double>> TileFallbacks::exact_half_grids(Tile tile, Tile parent,
+                                                                               LineFamily family) {
+  return store_.exact_half_grids(tile, replacement(parent, family).value_or(parent), family, exaggeration_);
+}
+
 bool TileFallbacks::are_children_held(Tile tile, int levels) const {
   if (!tree_[tile].has_children || levels == 0) return false;
   const Tile first = tree_.first_child(tile);

@@ -61,6 +61,10 @@ class TileFallbacks {
   std::shared_ptr<const TileHeightGrids<double>> exact_grids(Tile tile, LineFamily family);
   std::shared_ptr<const TileHeightGrids<float>> any_grids(Tile tile);
 
+  // Return the grids of a tile with half its intervals, with the posts of `parent` or of what stands in for that.
+  std::shared_ptr<const TileHeightGrids<float>> half_grids(Tile tile, Tile parent, LineFamily family);
+  std::shared_ptr<const TileHeightGrids<double>> exact_half_grids(Tile tile, Tile parent, LineFamily family);
+
   // Returns true if the children of a tile are to be cast in its place: it is not held, and they are.
   bool prefers_children(Tile tile);
   // Reads a tile even if nothing else may be read.

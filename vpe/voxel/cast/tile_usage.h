@@ -7,11 +7,11 @@
 
 namespace vpe::voxel {
 
-// Describes the use of one tile.
+// Describes the use of one tile, or of quarters of it.
 struct TileUse {
   lod::TileTree::Index tile = 0;
   lod::TileTree::Index source = 0;   // whose posts were cast: the tile itself, or an ancestor in its place
-  double min_distance_m = 0;         // lower bound of the distance from the camera to the tile's posts
+  double min_distance_m = 0;         // lower bound of the distance from the camera to the posts that were cast
   double geometric_error_m = 0;      // bound for what was cast; 0 for the reference surface itself
   double screen_space_error_px = 0;  // the same in the image
 };

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "vpe/voxel/cast/column_walk.h"
-#include "vpe/voxel/cast/grid_volume_store.h"
 #include "vpe/voxel/cast/volume_form.h"
+#include "vpe/voxel/volume/grid_volume_store.h"
 
 namespace vpe::voxel {
 

@@ -11,12 +11,12 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
-#include "vpe/voxel/cast/brick_store.h"
 #include "vpe/voxel/cast/column_batch.h"
-#include "vpe/voxel/cast/grid_volume_store.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/cast/pixel_normal.h"
 #include "vpe/voxel/cast/volume_form.h"
+#include "vpe/voxel/volume/brick_store.h"
+#include "vpe/voxel/volume/grid_volume_store.h"
 
 namespace vpe::voxel {
 

@@ -21,6 +21,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Lanes that a group can have here; paths of the others are not computed.
+constexpr int kPathLanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<float, kMaxLanes>()));
+
 // Holds the path of each lane through a height grid. Position, sigma, z and w R^2 / |E| are affine in the line
 // number k: value = value0 + value1 k.
 struct Paths {
@@ -60,7 +63,8 @@ inline void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, con
                        Paths& out) {
   const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
   const double n = f.intervals;
-  for (int lane = 0; lane < kMaxLanes; ++lane) {
+  std::fill(out.kind + kPathLanes, out.kind + kMaxLanes, -1.0);
+  for (int lane = 0; lane < kPathLanes; ++lane) {
     const double ax = group.azimuth[0][lane];
     const double ay = group.azimuth[1][lane];
     const double az = group.azimuth[2][lane];
@@ -117,7 +121,7 @@ inline void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, con
 void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnCamera& camera,
                 const glm::dvec3& up, Paths& out) {
   const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
-  for (int lane = 0; lane < kMaxLanes; ++lane) {
+  for (int lane = 0; lane < kPathLanes; ++lane) {
     const double x0 = out.x0[lane];
     const double xk = out.xk[lane];
     const double y0 = out.y0[lane];

@@ -335,19 +335,20 @@ class HorizonWalk {
     const V at_h = hn::MulAdd(share, hn::Sub(height, last_h_), last_h_);
     const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
     const V top = hn::Sub(rows, one);
-    V at_top = at;
     const M more = hn::And(lanes, hn::Gt(top, row_));
-    if (!hn::AllFalse(d, more)) {
+    if (hn::AllFalse(d, more)) {
+      scatter(d, group_.start, lane0_, lanes, top, at);
+    } else {
       const V end = hn::Mul(inverse(x, height), per_sigma);
       const V rise = hn::Sub(reached, slope_);
       const M rises = hn::And(more, hn::Gt(rise, zero));
-      const V gain = hn::Div(hn::Sub(end, at), rise);
+      const V gain = hn::IfThenElse(rises, hn::Div(hn::Sub(end, at), rise), zero);
       // From the event, which is nearer to the top row: from the first row of a run that begins straight below
       // the camera the difference of two large numbers would be left.
-      at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
-      scatter(d, group_.gain, lane0_, rises, top, gain);
+      const V at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
+      // The gain of other rows is 0 already.
+      scatter(d, group_.start, group_.gain, lane0_, lanes, top, at_top, gain);
     }
-    scatter(d, group_.start, lane0_, lanes, top, at_top);
     row_ = hn::IfThenElse(lanes, rows, row_);
     update_slope();
   }

@@ -81,7 +81,7 @@ struct ColumnGroup {
   alignas(64) float run_gain[kMaxLanes];
   alignas(64) float run_slope[kMaxLanes];
   float* start = nullptr;  // rows * kMaxLanes, at a multiple of 64 bytes
-  float* gain = nullptr;   // rows * kMaxLanes, at a multiple of 64 bytes
+  float* gain = nullptr;   // rows * kMaxLanes, at a multiple of 32 bytes
   double least_slope = 0;  // of all unresolved rows before row_stop; infinite when there are none
   int columns = 0;
 };

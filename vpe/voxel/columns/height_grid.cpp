@@ -151,16 +151,18 @@ TileHeightGrids<T>::TileHeightGrids(const TileHeightGrids<float>& coarser, const
                                     double radius_m, double exaggeration, LineFamily family)
     : family_(family), per_side_(grids_per_side(tile.key.level, tile.intervals)) {
   const int n = tile.intervals;
+  const int coarser_n = tile.coarser_intervals > 0 ? tile.coarser_intervals : n;
   const auto side = static_cast<std::size_t>(n) + 1;
   const lod::GridLines lines = lod::grid_lines(tile.key, n);
-  const lod::GridLines coarse_lines = lod::grid_lines(tile.coarser, n);
+  const lod::GridLines coarse_lines = lod::grid_lines(tile.coarser, coarser_n);
   const int levels = tile.key.level - tile.coarser.level;
   const auto places = [&](std::int32_t index, std::int32_t coarse_index, const std::vector<double>& at,
                           const std::vector<double>& coarse_at) {
     const std::int64_t first = (index - (std::int64_t{coarse_index} << levels)) * n;
     std::vector<CoarsePlace> out(side);
     for (std::size_t k = 0; k < side; ++k) {
-      const auto cell = std::min<std::int64_t>((first + static_cast<std::int64_t>(k)) >> levels, n - 1);
+      const std::int64_t at_coarser = (first + static_cast<std::int64_t>(k)) * (coarser_n / n);
+      const auto cell = std::min<std::int64_t>(at_coarser >> levels, coarser_n - 1);
       const auto c = static_cast<std::size_t>(cell);
       out[k] = {static_cast<int>(cell), (at[k] - coarse_at[c]) / (coarse_at[c + 1] - coarse_at[c])};
     }
@@ -168,7 +170,7 @@ TileHeightGrids<T>::TileHeightGrids(const TileHeightGrids<float>& coarser, const
   };
   const std::vector<CoarsePlace> across = places(tile.key.i, tile.coarser.i, lines.u, coarse_lines.u);
   const std::vector<CoarsePlace> up = places(tile.key.j, tile.coarser.j, lines.v, coarse_lines.v);
-  const int coarse_n = n / coarser.per_side();
+  const int coarse_n = coarser_n / coarser.per_side();
   const double per_depth = 1 / (radius_m * radius_m);
   std::vector<double> w(side * side);
   for (std::size_t y = 0; y < side; ++y) {

@@ -80,10 +80,12 @@ T post_height(const HeightGridLines<T>& lines, LineFamily family, int x, int y) 
 struct FallbackTile {
   lod::TileKey key;
   lod::TileKey coarser;  // an ancestor of `key`
-  int intervals = 0;     // of both
+  int intervals = 0;     // of the tile
   // Heights of the tile that is replaced, without exaggeration. Posts outside are moved to the nearer limit.
   double min_height_m = 0;
   double max_height_m = 0;
+  // Of the coarser tile: as many, or twice as many, so that the posts of a parent are taken as they are. 0: as many.
+  int coarser_intervals = 0;
 };
 
 // Holds the height grids of one tile in one family. Immutable; any thread may read it.

@@ -1,4 +1,4 @@
-#include "vpe/voxel/cast/view_sector.h"
+#include "vpe/voxel/columns/view_sector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,9 @@ namespace {
 constexpr double kNearest_px = 0.01;
 // Pixels beyond a sector or the image that are also cast, so that a nearest sample always exists; or a spacing, if that is wider.
 constexpr double kMargin_px = 1.0;
+// Bounds of the error of a diagonal's place in the image, and that share of the distance of V.
+constexpr double kRounding_px = 1e-3;
+constexpr double kRounding = 1e-14;
 
 }  // namespace
 
@@ -73,12 +76,14 @@ void SectorPlan::add(bool upright, bool forward) {
   const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + margin_px_;
   const double vt = upright ? vy_ : vx_;
   const double vs = upright ? vx_ : vy_;
-  // Range of s of the sector's pixels, by step.
+  // Range of s of the centres of the sector's pixels, by step. Empty, low above high, where a step has none.
   struct Reach {
     double low;
     double high;
   };
   std::vector<Reach> reach;
+  const double first_centre = (upright ? part_.x : part_.y) + 0.5;
+  const double last_centre = first_centre + (upright ? part_.width : part_.height) - 1;
   int first = -1;
   for (int k = 0; k < t_count; ++k) {
     const double t = t0 + k + 0.5;
@@ -99,7 +104,13 @@ void SectorPlan::add(bool upright, bool forward) {
       continue;
     }
     if (first < 0) first = k;
-    reach.push_back({low, high});
+    // Without what the margins add, which next to V are many lines at the reference.
+    Reach& pixels = reach.emplace_back(Reach{first_centre, last_centre});
+    if (vw_ > 0) {
+      const double slack = kRounding_px + kRounding * std::abs(vs / vw_);
+      pixels.low = std::max(first_centre, (vs - std::abs(q)) / vw_ - slack);
+      pixels.high = std::min(last_centre, (vs + std::abs(q)) / vw_ + slack);
+    }
   }
   if (reach.empty()) return;
   ViewSector sector;
@@ -117,9 +128,14 @@ void SectorPlan::add(bool upright, bool forward) {
     const ViewSector::Map map{1.0 + lean * vw_, -lean * vs};
     sector.maps.push_back(map);
     const Reach& r = reach[static_cast<std::size_t>(k)];
+    if (r.low > r.high) continue;
     low = std::min(low, map.scale * r.low + map.shift);
     high = std::max(high, map.scale * r.high + map.shift);
   }
+  if (!(low <= high)) return;  // no pixel, so index_ stays without it
+  // A pixel has a line on either side.
+  low -= spacing_;
+  high += spacing_;
   // Where lines are parallel and upright they go through pixel centres.
   sector.first_line = std::floor(low - 0.5) + 0.5;
   sector.lines = static_cast<int>(std::ceil((high - sector.first_line) / spacing_)) + 1;

@@ -1,4 +1,4 @@
-#include "vpe/voxel/cast/brick_store.h"
+#include "vpe/voxel/volume/brick_store.h"
 
 #include <algorithm>
 #include <utility>

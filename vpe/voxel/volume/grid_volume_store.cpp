@@ -1,4 +1,4 @@
-#include "vpe/voxel/cast/grid_volume_store.h"
+#include "vpe/voxel/volume/grid_volume_store.h"
 
 #include <utility>
 
