@@ -72,13 +72,14 @@ void run(const mars::Pose& pose, int width, int height, int rounds, char** files
     }
   }
   std::printf(
-      "| finest spacing m | tiles in the file | tiles drawn | triangles | select ms | frame ms |\n"
-      "|---|---|---|---|---|---|\n");
+      "| finest spacing m | tiles in the file | tiles drawn | triangles | in sight | select ms | frame ms |\n"
+      "|---|---|---|---|---|---|---|\n");
   double x_mean = 0, y_mean = 0, xx = 0, xy = 0;
   for (Planet& p : planets) {
-    std::printf("| %.1f | %zu | %d | %lld | %.3f | %.2f |\n", p.spacing_m,
+    std::printf("| %.1f | %zu | %d | %lld | %lld | %.3f | %.2f |\n", p.spacing_m,
                 static_cast<std::size_t>(p.planet->tree().size()), p.stats.tiles_drawn,
-                static_cast<long long>(p.stats.triangles), median_upper(p.select_ms), median_upper(p.frame_ms));
+                static_cast<long long>(p.stats.triangles), static_cast<long long>(p.stats.triangles_in_sight),
+                median_upper(p.select_ms), median_upper(p.frame_ms));
     x_mean -= std::log2(p.spacing_m) / count;
     y_mean += std::log2(median_upper(p.frame_ms)) / count;
   }

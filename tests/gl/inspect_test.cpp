@@ -62,6 +62,8 @@ TEST_F(Inspect, LevelsHaveTheColoursOfThePalette) {
     if (!(result.frame.range_m[n] < core::kSkyRange)) continue;
     const vpe::base::Rgb c = result.frame.colour[n];
     bool found = false;
+    EXPECT_GT(result.stats.triangles_in_sight, 0);
+    EXPECT_LE(result.stats.triangles_in_sight, result.stats.triangles);
     for (std::size_t level = 0; level < result.stats.tiles_by_level.size(); ++level) {
       if (result.stats.tiles_by_level[level] == 0) continue;
       const vpe::base::Rgb wanted = core::level_colour(static_cast<int>(level)).colour;

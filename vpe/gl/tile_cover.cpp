@@ -347,7 +347,7 @@ void TileCover::lay_out(const core::View& view) {
 // Ground that the sphere below all of it hides is hidden by what is drawn, which is within its errors of the ground.
 void TileCover::find_seen_pieces(const core::View& view) {
   double geometric_error_m = 0;
-  for (const SceneTile& t : tiles_) geometric_error_m = std::max(error_m, t.tile->geometric_error_m);
+  for (const SceneTile& t : tiles_) geometric_error_m = std::max(geometric_error_m, t.tile->geometric_error_m);
   const double occluder_m = planet_.tree().lowest_radius_m(drawn_.drawn.exaggeration) - geometric_error_m;
   const PieceView seen{cull::make_frustum(view), cull::make_horizon(cull::make_camera(view.camera.position_m),
                                                                     std::max(0.0, occluder_m))};
