@@ -56,7 +56,8 @@ TEST(Polyline, CurvesKeepAFewPointsWithinTheTolerance) {
     points.push_back({100 * std::cos(a), 100 * std::sin(a)});
   }
   const auto kept = simplified(points);
-  EXPECT_LT(kept.size(), points.size() / 4);
+  // Pieces over an arc of four steps are off it by 0.02 px, of five by 0.031.
+  EXPECT_LE(kept.size(), 628U / 4 + 1);
   EXPECT_GT(kept.size(), 20U);
   EXPECT_LE(largest_distance_px(points, kept), kStrokeTolerance_px * (1 + 1e-9));
 }
