@@ -83,7 +83,7 @@ class GreedyMesher {
     return result(intervals_);
   }
 
-  // What is known of a triangle, from mesh to mesh.
+  // Holds what is known of a triangle, from mesh to mesh.
   struct FaceState {
     WorstPost worst;
     double edges_m = kUnknown;  // the largest error along its edges, of those looked at

@@ -84,7 +84,7 @@ struct FallbackTile {
   // Heights of the tile that is replaced, without exaggeration. Posts outside are moved to the nearer limit.
   double min_height_m = 0;
   double max_height_m = 0;
-  // Of the coarser tile: as many, or twice as many, so that the posts of a parent are taken as they are. 0: as many.
+  // Counts those of the coarser tile: as many, or twice as many, so that the posts of a parent are taken as they are. 0: as many.
   int coarser_intervals = 0;
 };
 
