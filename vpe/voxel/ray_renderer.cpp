@@ -160,6 +160,7 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   std::vector<PixelNormal> normals_;
   SectorCaster hint_sectors_;
   std::optional<double> exaggeration_;        // of the last image
+  bool was_flat_ = false;  // by the last image
   bool has_new_planet_ = false;               // since the last image
   std::unordered_set<std::string> reported_;  // failures
   // Kept so that the next image need not allocate them.
@@ -475,7 +476,10 @@ ReadingRule RayRenderer::reading_rule(const core::DrawRequest& request, bool rea
   const double exaggeration = request.settings.exaggeration;
   const bool is_exaggerated_anew =
       std::exchange(exaggeration_, exaggeration).value_or(exaggeration) != exaggeration;
-  const bool starts_anew = std::exchange(has_new_planet_, false) || is_exaggerated_anew;
+  // Flat shading reads no normals of posts.
+  const bool is_flat = request.settings.shading == core::Shading::kFlat;
+  const bool is_smooth_anew = std::exchange(was_flat_, is_flat) && !is_flat;
+  const bool starts_anew = std::exchange(has_new_planet_, false) || is_exaggerated_anew || is_smooth_anew;
   if (reads_all) return ReadingRule::always();
   if (paging.wait) return {paging.timeout_s, pool_.threads()};
   if (starts_anew && paging.change_wait_s > 0) return {paging.change_wait_s, pool_.threads()};
