@@ -160,7 +160,7 @@ class RayRenderer : public core::PixelRenderer, public paging::PlanetUser {
   std::vector<PixelNormal> normals_;
   SectorCaster hint_sectors_;
   std::optional<double> exaggeration_;        // of the last image
-  bool was_flat_ = false;  // by the last image
+  bool was_flat_ = false;                     // by the last image
   bool has_new_planet_ = false;               // since the last image
   std::unordered_set<std::string> reported_;  // failures
   // Kept so that the next image need not allocate them.
