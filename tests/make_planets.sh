@@ -25,8 +25,8 @@ echo "export VPE_EMBEDDED_PLANET=$folder/embedded.vpe VPE_LARGE_PLANET=$folder/l
 if [ -e "$data/gale-ctx20/gale_ctx20_mosaic.tif" ]; then
   make gale "$data"/mola8/mola8_topo.lbl "$data"/gale-mola128/gale_megt128.lbl "$data"/gale-ctx20/gale_ctx20_mosaic.tif \
     "$data"/gale-hirise5/gale_hirise5_dtm.tif "$data"/gale-hirise1/missionDEM.tif --datum areoid --align edges \
-    --reject-outliers --image "$data"/mdim21/mdim21_2880.vrt "$data"/gale-hrsc/gale_texture.vrt \
-    "$data"/gale-hirise5/irb.vrt "$data"/gale-hirise1/gale_hirise_ortho_050cm.tif
+    --reject-outliers --image "$data"/mdim21/mdim21_2880.vrt --image "$data"/gale-hrsc/gale_texture.vrt \
+    --image "$data"/gale-hirise5/irb.vrt --image "$data"/gale-hirise1/gale_hirise_ortho_050cm.tif
   echo "export VPE_GALE_PLANET=$folder/gale.vpe"
 else
   echo "no planetary data in $data: tests over Gale will be skipped (tools/fetch_test_data.sh)" >&2
