@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "panorama/viewer/sampler.h"
-#include "panorama/viewer/viewer.h"
+#include "panorama/viewer/view_places.h"
 #include "vpe/base/parallel.h"
 
 namespace panorama {
@@ -14,13 +14,6 @@ namespace {
 
 constexpr int kBand_px = 16;
 
-// Returns whether the map's image has the place, x in [0, turn_px).
-bool is_shown(const PanoramaMap& map, const glm::dvec2& place) {
-  const bool is_closed = static_cast<double>(map.width_px) > map.turn_px - 1.0;
-  return (is_closed || place.x <= static_cast<double>(map.width_px)) && place.y >= 0.0 &&
-         place.y <= static_cast<double>(map.height_px);
-}
-
 // Returns the place in an image of the full circle that begins where the map's does.
 glm::dvec2 place_of(const PanoramaMap& map, const Direction& direction) {
   glm::dvec2 place = map.place(direction);
@@ -28,18 +21,15 @@ glm::dvec2 place_of(const PanoramaMap& map, const Direction& direction) {
   return place;
 }
 
-void places_of_row(const PanoramaMap& map, const vpe::core::View& view, int y, std::vector<glm::dvec2>& row) {
-  const vpe::core::SubRectangle part = vpe::core::drawn_part(view);
-  row.resize(static_cast<std::size_t>(part.width) + 1);
-  for (std::size_t x = 0; x < row.size(); ++x) {
-    row[x] = place_of(
-        map, to_direction(vpe::core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + y + 0.5)));
-  }
-}
-
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F) + 0.5F); }
 
 }  // namespace
+
+bool is_shown(const PanoramaMap& map, const glm::dvec2& place) {
+  const bool is_closed = static_cast<double>(map.width_px) > map.turn_px - 1.0;
+  return (is_closed || place.x <= static_cast<double>(map.width_px)) && place.y >= 0.0 &&
+         place.y <= static_cast<double>(map.height_px);
+}
 
 std::optional<glm::dvec2> shown_place(const PanoramaMap& map, const Direction& direction) {
   if (!std::isfinite(direction.azimuth_deg) || !(std::abs(direction.elevation_deg) <= 90.0))
@@ -60,17 +50,19 @@ vpe::core::RgbImage render_view(const TiledImage& tiled_image, const PanoramaMap
   const auto difference = [&map](const glm::dvec2& a, const glm::dvec2& b) {
     return glm::dvec2(std::remainder(b.x - a.x, map.turn_px), b.y - a.y);
   };
+  const ViewPlaces places(map, view);
   const auto bands = static_cast<std::size_t>((size.y + kBand_px - 1) / kBand_px);
   vpe::base::parallel_for(bands, options.threads, [&](std::size_t band) {
     Sampler sampler(tiled_image, map, options.origin);
     const int begin = static_cast<int>(band) * kBand_px;
     const int end = std::min(size.y, begin + kBand_px);
-    std::vector<glm::dvec2> row;
-    std::vector<glm::dvec2> next;
-    places_of_row(map, view, begin, next);
+    // One place more than there are pixels, and one row, for the footprints of the last ones.
+    std::vector<glm::dvec2> row(static_cast<std::size_t>(size.x) + 1);
+    std::vector<glm::dvec2> next(row.size());
+    places.row(begin, next);
     for (int y = begin; y < end; ++y) {
       std::swap(row, next);
-      places_of_row(map, view, y + 1, next);
+      places.row(y + 1, next);
       vpe::base::Rgb* out =
           image.pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x);
       for (std::size_t x = 0; x + 1 < row.size(); ++x) {

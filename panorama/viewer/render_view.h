@@ -34,6 +34,9 @@ struct RenderViewOptions {
 vpe::core::RgbImage render_view(const TiledImage& tiled_image, const PanoramaMap& map,
                                 const vpe::core::View& view, const RenderViewOptions& options);
 
+// Returns whether the map's image has a place, x in [0, turn_px).
+bool is_shown(const PanoramaMap& map, const glm::dvec2& place);
+
 // Returns the place where the image shows a direction, x in [0, turn_px); nullopt where it shows none. Images
 // of a full circle within a pixel have no gap.
 std::optional<glm::dvec2> shown_place(const PanoramaMap& map, const Direction& direction);

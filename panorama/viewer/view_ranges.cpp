@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "panorama/viewer/render_view.h"
-#include "panorama/viewer/viewer.h"
+#include "panorama/viewer/view_places.h"
 #include "vpe/core/frame.h"
 
 namespace panorama {
@@ -26,15 +26,16 @@ std::vector<float> view_ranges(PlaneReader& ranges, const PanoramaMap& map, cons
   const vpe::core::SubRectangle part = vpe::core::drawn_part(view);
   std::vector<float> out;
   out.reserve(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height));
+  const ViewPlaces places(map, view);
+  std::vector<glm::dvec2> row(static_cast<std::size_t>(part.width));
   for (int y = 0; y < part.height; ++y) {
-    for (int x = 0; x < part.width; ++x) {
-      const auto place =
-          shown_place(map, to_direction(vpe::core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5)));
+    places.row(y, row);
+    for (const glm::dvec2& place : row) {
       double range_m = 0;
-      if (place) {
-        const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(place->x), 0, map.width_px - 1);
-        const auto row = std::clamp<std::int64_t>(static_cast<std::int64_t>(place->y), 0, map.height_px - 1);
-        range_m = ranges.at(column, row);
+      if (is_shown(map, place)) {
+        const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(place.x), 0, map.width_px - 1);
+        const auto line = std::clamp<std::int64_t>(static_cast<std::int64_t>(place.y), 0, map.height_px - 1);
+        range_m = ranges.at(column, line);
       }
       out.push_back(std::isfinite(range_m) && range_m > 0 ? static_cast<float>(range_m) : vpe::core::kSkyRange);
     }
