@@ -1,5 +1,6 @@
 // --memory bounds the memory of the process.
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include "tests/app/support/app_fixture.h"
@@ -90,6 +91,27 @@ TEST_F(Memory, Fly) {
     }
     last = most_resident(stats);
   }
+}
+
+class LongMemory : public AppTest {};
+
+// From orbit the report draws images of up to 256 rays a pixel, and three renderers at once.
+TEST_F(LongMemory, ErrorTimeReport) {
+  const char* planet_file = std::getenv("VPE_EMBEDDED_PLANET");
+  if (planet_file == nullptr) GTEST_SKIP() << "skipped: $VPE_EMBEDDED_PLANET names no planet file";
+  const auto peak_of = [&](const std::string& size, const std::string& memory) {
+    Command command = command_for({"report", "error-time", planet_file, "--view", "orbit", "--rounds", "1",
+                                   "--size", size, "--memory", memory, "-q", "-o", "x"});
+    command.limit_s = 3000;
+    const Result result = run(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.peak_bytes;
+  };
+  const std::int64_t base = vpe({"info", planet_file}).peak_bytes;
+  const std::int64_t peak = peak_of("640x360", "1024");
+  RecordProperty("peak", std::to_string(peak));
+  EXPECT_LE(peak, base + 1024 * kMega);
+  EXPECT_GT(peak, base + 512 * kMega) << "the report needs far less than the bound: nothing was tested";
 }
 
 }  // namespace
