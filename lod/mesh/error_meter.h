@@ -53,6 +53,10 @@ class ErrorMeter {
   ErrorTerms measure(const FinePosts& fine) const;
   ErrorTerms measure(const Posts& fine) const;
 
+  // Returns the same to the bit, but visits all pieces, also those that cannot have the largest distance (overlay_cut.h).
+  // For tests and benchmarks.
+  ErrorTerms measure_all(const FinePosts& fine) const;
+
  private:
   struct Prepared;
   std::unique_ptr<const Prepared> prepared_;

@@ -27,7 +27,12 @@ class GridMeter {
   // intervals and the same planet radius, else throws std::invalid_argument.
   ErrorTerms measure(const FinePosts& fine) const;
 
+  // Returns the same to the bit, but visits all posts, also those in rows that cannot have the largest distance
+  // (grid_kernel.h). For tests and benchmarks.
+  ErrorTerms measure_all(const FinePosts& fine) const;
+
  private:
+  ErrorTerms measure(const FinePosts& fine, bool all) const;
   struct Prepared;
   std::unique_ptr<const Prepared> prepared_;
 };

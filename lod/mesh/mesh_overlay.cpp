@@ -56,7 +56,8 @@ FineGrid::FineGrid(const Posts& posts, double radius)
       radius_m(radius),
       u(grid_lines(posts.key, posts.intervals).u),
       v(grid_lines(posts.key, posts.intervals).v),
-      depth(posts.height_m.size()),
+      padded_u(u.data(), u.data() + u.count()),
+      depth(posts.height_m.size() + kDepthPad),
       length(posts.height_m.size()) {
   const auto side = static_cast<std::size_t>(posts.side());
   double least = 0.0;
@@ -72,6 +73,9 @@ FineGrid::FineGrid(const Posts& posts, double radius)
     const double row_least = *std::min_element(w, w + side);
     least = j == 0 ? row_least : std::min(least, row_least);
   }
+  highest_m = *std::max_element(posts.height_m.begin(), posts.height_m.end());
+  padded_u.resize(padded_u.size() + kDepthPad, 1e6);
+  std::fill(depth.end() - kDepthPad, depth.end(), least);
   double steepest = 0.0;
   for (std::size_t j = 0; j + 1 < side; ++j) {
     const double* low = depth.data() + j * side;

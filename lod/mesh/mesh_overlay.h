@@ -5,10 +5,12 @@
 // triangle.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "lod/mesh/depth_kernel.h"
 #include "lod/mesh/mesh.h"
 
 namespace lod {
@@ -20,6 +22,7 @@ class LineTable {
   int count() const { return static_cast<int>(line_.size()); }
   double operator[](int k) const { return line_[static_cast<std::size_t>(k)]; }
   const double* data() const { return line_.data(); }
+  const double* inverse_widths() const { return inverse_width_.data(); }
   double widest() const { return widest_; }
 
   // Returns the first line at or beyond x, or count() if there is none.
@@ -54,15 +57,19 @@ class LineTable {
 struct FineGrid {
   FineGrid(const Posts& posts, double radius_m);
 
+  std::size_t side() const { return static_cast<std::size_t>(intervals) + 1; }
+
   TileKey key;
   int intervals;
   double radius_m;
   LineTable u;
   LineTable v;
-  std::vector<double> depth;   // W
-  std::vector<double> length;  // n
-  double depth_variation = 0;  // largest variation of W over a cell, relative to its least value
+  std::vector<double> padded_u;  // u with kDepthPad entries beyond it
+  std::vector<double> depth;     // W, with kDepthPad entries more
+  std::vector<double> length;    // n
+  double depth_variation = 0;    // largest variation of W over a cell, relative to its least value
   double length_variation = 0;
+  double highest_m = 0;
 };
 
 // A mesh as planes of depth over its triangles.

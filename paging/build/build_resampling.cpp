@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "vpe/base/parallel.h"
@@ -96,21 +97,27 @@ class Meter {
       locate(block);
       find_sources(block);
     });
-    std::erase_if(posts_, [](const SourcePost& p) { return p.leaf == kNowhere; });
-    std::sort(posts_.begin(), posts_.end(),
-              [](const SourcePost& a, const SourcePost& b) { return a.leaf < b.leaf; });
-    std::vector<std::size_t> runs;  // where each leaf's posts begin
-    for (std::size_t n = 0; n < posts_.size(); ++n) {
-      if (n == 0 || posts_[n].leaf != posts_[n - 1].leaf) runs.push_back(n);
+    // Numbers of posts by leaf: a counting sort.
+    std::vector<std::size_t> end(leaves_.size() + 1);
+    for (const SourcePost& p : posts_)
+      if (p.leaf != kNowhere) ++end[p.leaf + 1];
+    std::vector<std::size_t> runs;  // leaves that have posts
+    for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+      if (end[leaf + 1] != 0) runs.push_back(leaf);
+      end[leaf + 1] += end[leaf];
     }
+    std::vector<std::size_t> begin(end.begin(), end.end() - 1);
+    std::vector<std::uint32_t> by_leaf(end.back());
+    for (std::size_t n = 0; n < posts_.size(); ++n)
+      if (posts_[n].leaf != kNowhere) by_leaf[begin[posts_[n].leaf]++] = static_cast<std::uint32_t>(n);
     vpe::base::parallel_for(runs.size(), threads_, [&](std::size_t r) {
-      const std::size_t end = r + 1 < runs.size() ? runs[r + 1] : posts_.size();
-      const lod::TileKey& key = leaves_[posts_[runs[r]].leaf];
+      const std::size_t leaf = runs[r];
+      const lod::TileKey& key = leaves_[leaf];
       const lod::Posts posts = read_posts(stored_, key);
       const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
-      auto& sums = by_leaf_[posts_[runs[r]].leaf];
-      for (std::size_t n = runs[r]; n < end; ++n) {
-        const SourcePost& p = posts_[n];
+      auto& sums = by_leaf_[leaf];
+      for (std::size_t k = end[leaf]; k < end[leaf + 1]; ++k) {
+        const SourcePost& p = posts_[by_leaf[k]];
         const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, stored_.meta.radius_m);
         sums[p.source].add(std::abs(height_m - p.height_m));
       }
