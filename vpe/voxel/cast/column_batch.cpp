@@ -27,11 +27,13 @@ void Scratch::prepare(int rows, int group_count) {
   const auto used = static_cast<std::size_t>(group_count);
   // Where half of the lanes are used, a row's start and gain are one cache line.
   const bool is_half = column_lanes() <= kMaxLanes / 2;
-  const std::size_t per_group = is_half ? count : 2 * count;
+  const std::size_t per_group = is_half ? count + 1 : 2 * (count + 1);
   buffers.assign(per_group * used, LaneFloats{});
   for (std::size_t g = 0; g < used; ++g) {
     groups[g].start = buffers[g * per_group].lane;
-    groups[g].gain = is_half ? groups[g].start + kMaxLanes / 2 : buffers[g * per_group + count].lane;
+    groups[g].gain = groups[g].start + kMaxLanes / 2;
+    if (!is_half) groups[g].gain = buffers[g * per_group + count + 1].lane;
+    if (value_step() == 2) groups[g].gain = groups[g].start + 1;
   }
 }
 

@@ -18,6 +18,7 @@
 #include <limits>
 
 #include "vpe/voxel/columns/column_rows-inl.h"
+#include "vpe/voxel/columns/column_scatter-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -43,6 +44,36 @@ void update_least_slope_kernel(const Rows& rows, ColumnGroup& group) {
     case RowKind::kTable: return least_as<RowKind::kTable>(rows, group);
     case RowKind::kSector: return least_as<RowKind::kSector>(rows, group);
   }
+}
+
+// Returns true if a run of rows of some column begins at a row.
+bool any_begins(const float* starts) {
+#if HWY_TARGET == HWY_AVX2
+  const __m256i all = _mm256_or_si256(_mm256_load_si256(reinterpret_cast<const __m256i*>(starts)),
+                                      _mm256_load_si256(reinterpret_cast<const __m256i*>(starts) + 1));
+  return _mm256_testz_si256(all, all) == 0;
+#else
+  const RowTag d;
+  return !hn::AllFalse(d, hn::Ne(hn::Load(d, starts), hn::Zero(d)));
+#endif
+}
+// Return the starts and the gains of a row.
+hn::Vec<RowTag> starts_of([[maybe_unused]] const Rows& rows, const float* starts) {
+  const RowTag d;
+#if HWY_TARGET == HWY_AVX2
+  if (rows.has_ranges) return hn::Load(d, starts);
+  return hn::ConcatEven(d, hn::Load(d, starts + kMaxLanes / 2), hn::Load(d, starts));
+#else
+  return hn::Load(d, starts);
+#endif
+}
+hn::Vec<RowTag> gains_of([[maybe_unused]] const float* starts, [[maybe_unused]] const float* gains) {
+  const RowTag d;
+#if HWY_TARGET == HWY_AVX2
+  return hn::ConcatOdd(d, hn::Load(d, starts + kMaxLanes / 2), hn::Load(d, starts));
+#else
+  return hn::Load(d, gains);
+#endif
 }
 
 template <RowKind kKind>
@@ -76,14 +107,14 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
     float* const gains = group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
     const V row = hn::Set(d, static_cast<float>(r));
     const V slope = model.slope(row);
-    const V now = hn::Load(d, starts);
-    const auto begins = hn::Ne(now, zero);
-    if (!hn::AllFalse(d, begins)) {
+    if (any_begins(starts)) {
+      const V now = starts_of(rows, starts);
+      const auto begins = hn::Ne(now, zero);
       start = hn::IfThenElse(begins, now, start);
-      gain = hn::IfThenElse(begins, hn::Load(d, gains), gain);
+      gain = hn::IfThenElse(begins, gains_of(starts, gains), gain);
       from = hn::IfThenElse(begins, slope, from);
       hn::Store(zero, d, starts);
-      hn::Store(zero, d, gains);
+      hn::Store(zero, d, kValueStep == 2 ? starts + kMaxLanes / 2 : gains);
     }
     if (rows.has_ranges) {
       put(r, hn::IfThenElse(hn::Lt(row, resolved), start, sky));

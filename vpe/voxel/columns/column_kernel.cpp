@@ -108,6 +108,7 @@ void walk_grid_kernel(const HeightGridFrame& f, HeightGridSource& source, const 
 }
 
 int column_lanes_kernel() { return static_cast<int>(hn::Lanes(FloatTag())); }
+int value_step_kernel() { return kValueStep; }
 const char* column_target_kernel() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace
@@ -126,6 +127,7 @@ HWY_EXPORT(update_least_slope_kernel);
 HWY_EXPORT(expand_rows_kernel);
 HWY_EXPORT(copy_rows_kernel);
 HWY_EXPORT(column_lanes_kernel);
+HWY_EXPORT(value_step_kernel);
 HWY_EXPORT(column_target_kernel);
 
 void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera,
@@ -143,6 +145,7 @@ void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::pt
   HWY_DYNAMIC_DISPATCH(copy_rows_kernel)(from, from_stride, to, to_stride, columns, rows, stream);
 }
 int column_lanes() { return HWY_DYNAMIC_DISPATCH(column_lanes_kernel)(); }
+int value_step() { return HWY_DYNAMIC_DISPATCH(value_step_kernel)(); }
 const char* column_target() { return HWY_DYNAMIC_DISPATCH(column_target_kernel)(); }
 
 }  // namespace vpe::voxel

@@ -48,10 +48,10 @@ struct Paths {
 constexpr double kTiny = 1e-290;
 constexpr double kHuge = 1e30;
 
-double away_from_zero(double x) { return std::abs(x) < kTiny ? (x < 0 ? -kTiny : kTiny) : x; }
+inline double away_from_zero(double x) { return std::abs(x) < kTiny ? (x < 0 ? -kTiny : kTiny) : x; }
 
 // Clips [from, to] to where 0 <= p + q k <= n.
-void cut(double p, double q, double n, double& from, double& to) {
+inline void cut(double p, double q, double n, double& from, double& to) {
   const double inverse = 1.0 / away_from_zero(q);
   const double a = -p * inverse;
   const double b = (n - p) * inverse;
@@ -59,61 +59,98 @@ void cut(double p, double q, double n, double& from, double& to) {
   to = std::min(to, std::max(a, b));
 }
 
+// The same for vectors.
+using PathTag = hn::CappedTag<double, kMaxLanes / 2>;
+using PathVec = hn::Vec<PathTag>;
+
+inline PathVec away_from_zero(PathVec x) {
+  const PathTag d;
+  const auto tiny = hn::Set(d, kTiny);
+  const auto least = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Neg(tiny), tiny);
+  return hn::IfThenElse(hn::Lt(hn::Abs(x), tiny), least, x);
+}
+
+inline void cut(PathVec p, PathVec q, PathVec n, PathVec& from, PathVec& to) {
+  const PathTag d;
+  const PathVec inverse = hn::Div(hn::Set(d, 1.0), away_from_zero(q));
+  const PathVec a = hn::Mul(hn::Neg(p), inverse);
+  const PathVec b = hn::Mul(hn::Sub(n, p), inverse);
+  from = hn::Max(from, hn::Min(a, b));
+  to = hn::Min(to, hn::Max(a, b));
+}
+
+// Sums and products are rounded one by one, so that paths have the same bits for all instruction sets.
 inline void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const ColumnGroup& group,
                        Paths& out) {
-  const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
-  const double n = f.intervals;
+  const PathTag d;
+  const auto set = [&](double x) { return hn::Set(d, x); };
+  const PathVec zero = hn::Zero(d);
+  const PathVec one = set(1.0);
+  const PathVec scale = set(camera.radius_m * camera.radius_m / camera.distance_m);
+  const PathVec n = set(f.intervals);
+  const PathVec f_u0 = set(f.u0);
+  const PathVec f_v0 = set(f.v0);
+  const PathVec f_du = set(f.du);
+  const PathVec f_dv = set(f.dv);
   std::fill(out.kind + kPathLanes, out.kind + kMaxLanes, -1.0);
-  for (int lane = 0; lane < kPathLanes; ++lane) {
-    const double ax = group.azimuth[0][lane];
-    const double ay = group.azimuth[1][lane];
-    const double az = group.azimuth[2][lane];
-    const double nx = group.normal[0][lane] * f.du;
-    const double ny = group.normal[1][lane] * f.dv;
-    const double nc = group.normal[0][lane] * f.u0 + group.normal[1][lane] * f.v0 + group.normal[2][lane];
+  alignas(64) double unresolved[kMaxLanes];
+  for (int lane = 0; lane < kPathLanes; ++lane)
+    unresolved[lane] = group.row[lane] < std::min(group.row_end[lane], group.row_stop[lane]) ? 1.0 : 0.0;
+  for (int lane = 0; lane < kPathLanes; lane += static_cast<int>(hn::Lanes(d))) {
+    const PathVec ax = hn::Load(d, group.azimuth[0] + lane);
+    const PathVec ay = hn::Load(d, group.azimuth[1] + lane);
+    const PathVec az = hn::Load(d, group.azimuth[2] + lane);
+    const PathVec n0 = hn::Load(d, group.normal[0] + lane);
+    const PathVec n1 = hn::Load(d, group.normal[1] + lane);
+    const PathVec nx = hn::Mul(n0, f_du);
+    const PathVec ny = hn::Mul(n1, f_dv);
+    const PathVec nc =
+        hn::Add(hn::Add(hn::Mul(n0, f_u0), hn::Mul(n1, f_v0)), hn::Load(d, group.normal[2] + lane));
     // x = x0 + xk k, y = y0 + yk k; outward is where the cross product p' x p points along the normal.
-    const bool diagonal = nx * ny >= 0;
-    const bool columns = std::abs(nx) <= std::abs(ny);
-    const double below = away_from_zero(diagonal ? nx + ny : (columns ? ny : nx));
-    const double first = -nc / below;
-    const double m = diagonal ? ny / below : (columns ? -nx / below : -ny / below);
-    const double x0 = !diagonal && columns ? 0.0 : first;
-    const double xk = !diagonal && columns ? 1.0 : m;
-    const double y0 = !diagonal && !columns ? 0.0 : first;
-    const double yk = diagonal ? m - 1.0 : (columns ? m : 1.0);
-    const bool grows = diagonal || columns ? below < 0 : below > 0;
-    const double u = f.u0 + f.du * x0;
-    const double v = f.v0 + f.dv * y0;
-    const double du = f.du * xk;
-    const double dv = f.dv * yk;
-    const double s0 = ax * u + ay * v + az;
-    const double s1 = ax * du + ay * dv;
-    double from = -kHuge;
-    double to = kHuge;
+    const auto diagonal = hn::Ge(hn::Mul(nx, ny), zero);
+    const auto wide = hn::Le(hn::Abs(nx), hn::Abs(ny));
+    const auto columns = hn::AndNot(diagonal, wide);
+    const auto rows = hn::Not(hn::Or(diagonal, wide));
+    const PathVec below =
+        away_from_zero(hn::IfThenElse(diagonal, hn::Add(nx, ny), hn::IfThenElse(wide, ny, nx)));
+    const PathVec first = hn::Div(hn::Neg(nc), below);
+    const PathVec m = hn::Div(hn::IfThenElse(diagonal, ny, hn::Neg(hn::IfThenElse(wide, nx, ny))), below);
+    const PathVec x0 = hn::IfThenElse(columns, zero, first);
+    const PathVec xk = hn::IfThenElse(columns, one, m);
+    const PathVec y0 = hn::IfThenElse(rows, zero, first);
+    const PathVec yk = hn::IfThenElse(diagonal, hn::Sub(m, one), hn::IfThenElse(wide, m, one));
+    const auto grows = hn::Or(hn::And(rows, hn::Gt(below, zero)), hn::AndNot(rows, hn::Lt(below, zero)));
+    const PathVec u = hn::Add(f_u0, hn::Mul(f_du, x0));
+    const PathVec v = hn::Add(f_v0, hn::Mul(f_dv, y0));
+    const PathVec s0 = hn::Add(hn::Add(hn::Mul(ax, u), hn::Mul(ay, v)), az);
+    const PathVec s1 = hn::Add(hn::Mul(ax, hn::Mul(f_du, xk)), hn::Mul(ay, hn::Mul(f_dv, yk)));
+    PathVec from = set(-kHuge);
+    PathVec to = set(kHuge);
     cut(x0, xk, n, from, to);
     cut(y0, yk, n, from, to);
     // sigma is positive in front of the camera. It is constant along paths that point straight up, which occur
     // on other faces below a camera exactly over the middle of a face.
-    if (s1 > 0) {
-      from = std::max(from, -s0 / away_from_zero(s1));
-    } else if (s1 < 0) {
-      to = std::min(to, -s0 / away_from_zero(s1));
-    } else if (!(s0 > 0)) {
-      to = from;
-    }
-    const bool inside = from < to && group.row[lane] < std::min(group.row_end[lane], group.row_stop[lane]);
-    out.position0[lane] = diagonal ? x0 : (columns ? y0 : x0);
-    out.position1[lane] = m;
-    out.sigma0[lane] = s0 * scale;
-    out.sigma1[lane] = s1 * scale;
-    out.x0[lane] = x0;
-    out.xk[lane] = xk;
-    out.y0[lane] = y0;
-    out.yk[lane] = yk;
-    out.from[lane] = from;
-    out.to[lane] = to;
-    const double family = diagonal ? 2.0 : (columns ? 0.0 : 1.0);
-    out.kind[lane] = inside ? 2.0 * family + (grows ? 1.0 : 0.0) : -1.0;
+    const PathVec front = hn::Div(hn::Neg(s0), away_from_zero(s1));
+    const auto rises = hn::Gt(s1, zero);
+    const auto falls = hn::Lt(s1, zero);
+    const auto behind = hn::Not(hn::Or(hn::Or(rises, falls), hn::Gt(s0, zero)));
+    from = hn::IfThenElse(rises, hn::Max(from, front), from);
+    to = hn::IfThenElse(falls, hn::Min(to, front), to);
+    to = hn::IfThenElse(behind, from, to);
+    const auto inside = hn::And(hn::Lt(from, to), hn::Gt(hn::Load(d, unresolved + lane), zero));
+    hn::Store(hn::IfThenElse(columns, y0, x0), d, out.position0 + lane);
+    hn::Store(m, d, out.position1 + lane);
+    hn::Store(hn::Mul(s0, scale), d, out.sigma0 + lane);
+    hn::Store(hn::Mul(s1, scale), d, out.sigma1 + lane);
+    hn::Store(x0, d, out.x0 + lane);
+    hn::Store(xk, d, out.xk + lane);
+    hn::Store(y0, d, out.y0 + lane);
+    hn::Store(yk, d, out.yk + lane);
+    hn::Store(from, d, out.from + lane);
+    hn::Store(to, d, out.to + lane);
+    const PathVec family = hn::IfThenElse(diagonal, set(4.0), hn::IfThenElse(wide, zero, set(2.0)));
+    const PathVec kind = hn::Add(family, hn::IfThenElse(grows, one, zero));
+    hn::Store(hn::IfThenElse(inside, kind, set(-1.0)), d, out.kind + lane);
   }
 }
 

@@ -24,13 +24,21 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Stores a value for each of the given lanes at to[row * kMaxLanes + lane], and another one at to_too[row * kMaxLanes + lane] unless
-// that is null. lane0 is the column of the vector's first lane.
-template <class D>
+// Eight lanes have a start and a gain in one cache line, side by side so that both are stored at once.
+#if HWY_TARGET == HWY_AVX2
+constexpr int kValueStep = 2;
+#else
+constexpr int kValueStep = 1;
+#endif
+
+// Stores a value for each of the given lanes at to[row * kMaxLanes + lane * kStep], and another one likewise in to_too unless that
+// is null. lane0 is the column of the vector's first lane.
+template <int kStep, class D>
 void scatter(D d, float* to, float* to_too, int lane0, hn::Mask<D> lanes, hn::Vec<D> at_row, hn::Vec<D> values,
              hn::Vec<D> values_too) {
   using T = hn::TFromD<D>;
 #if HWY_TARGET <= HWY_AVX3
+  static_assert(kStep == 1);
   if constexpr (sizeof(T) == 4) {
     const __m512i row = _mm512_cvttps_epi32(at_row.raw);
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -44,7 +52,8 @@ void scatter(D d, float* to, float* to_too, int lane0, hn::Mask<D> lanes, hn::Ve
   alignas(64) hn::TFromD<decltype(di)> index[kMaxLanes];
   alignas(64) T all[kMaxLanes];
   alignas(64) T all_too[kMaxLanes];
-  const auto column = hn::Iota(di, static_cast<hn::TFromD<decltype(di)>>(lane0));
+  auto column = hn::Iota(di, static_cast<hn::TFromD<decltype(di)>>(lane0));
+  if constexpr (kStep == 2) column = hn::Add(column, column);
   static_assert(kMaxLanes == 16);
   hn::Store(hn::Add(hn::ShiftLeft<4>(hn::ConvertTo(di, at_row)), column), di, index);
   hn::Store(values, d, all);
@@ -58,10 +67,36 @@ void scatter(D d, float* to, float* to_too, int lane0, hn::Mask<D> lanes, hn::Ve
   }
 }
 
+#if HWY_TARGET == HWY_AVX2
+// Stores a start and a gain for each lane at its row, all lanes without a branch: 0 for those of no `lanes`, whose values there
+// are 0. Requires that `gain` is 0 for them.
+inline void scatter_pairs(hn::CappedTag<float, kMaxLanes> d, float* to,
+                          hn::Mask<hn::CappedTag<float, kMaxLanes>> lanes,
+                          hn::Vec<hn::CappedTag<float, kMaxLanes>> at_row,
+                          hn::Vec<hn::CappedTag<float, kMaxLanes>> start,
+                          hn::Vec<hn::CappedTag<float, kMaxLanes>> gain) {
+  alignas(32) std::int32_t index[8];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(index), _mm256_slli_epi32(_mm256_cvttps_epi32(at_row.raw), 4));
+  const __m256 some = hn::IfThenElseZero(lanes, start).raw;
+  // Lanes 0, 1, 4, 5 and 2, 3, 6, 7.
+  const __m256 a = _mm256_unpacklo_ps(some, gain.raw);
+  const __m256 b = _mm256_unpackhi_ps(some, gain.raw);
+  const auto put = [&](int lane, __m128 two) {
+    _mm_storel_pi(reinterpret_cast<__m64*>(to + index[lane] + 2 * lane), two);
+    _mm_storeh_pi(reinterpret_cast<__m64*>(to + index[lane + 1] + 2 * lane + 2), two);
+  };
+  put(0, _mm256_castps256_ps128(a));
+  put(2, _mm256_castps256_ps128(b));
+  put(4, _mm256_extractf128_ps(a, 1));
+  put(6, _mm256_extractf128_ps(b, 1));
+  (void)d;
+}
+#endif
+
 // Stores one value for each of the given lanes.
-template <class D>
+template <int kStep = 1, class D>
 void scatter(D d, float* to, int lane0, hn::Mask<D> lanes, hn::Vec<D> at_row, hn::Vec<D> values) {
-  scatter(d, to, nullptr, lane0, lanes, at_row, values, values);
+  scatter<kStep>(d, to, nullptr, lane0, lanes, at_row, values, values);
 }
 
 }  // namespace

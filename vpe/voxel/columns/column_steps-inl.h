@@ -336,8 +336,9 @@ class HorizonWalk {
     const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
     const V top = hn::Sub(rows, one);
     const M more = hn::And(lanes, hn::Gt(top, row_));
-    if (hn::AllFalse(d, more)) {
-      scatter(d, group_.start, lane0_, lanes, top, at);
+    // Where pairs are stored without a branch, one here would be guessed wrong too often.
+    if (!kStoresPairs && hn::AllFalse(d, more)) {
+      scatter<kValueStep>(d, group_.start, lane0_, lanes, top, at);
     } else {
       const V end = hn::Mul(inverse(x, height), per_sigma);
       const V rise = hn::Sub(reached, slope_);
@@ -346,8 +347,13 @@ class HorizonWalk {
       // From the event, which is nearer to the top row: from the first row of a run that begins straight below
       // the camera the difference of two large numbers would be left.
       const V at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
+#if HWY_TARGET == HWY_AVX2
+      if constexpr (kStoresPairs)
+        scatter_pairs(d, group_.start, lanes, hn::IfThenElse(lanes, top, row_), at_top, gain);
+#endif
       // The gain of other rows is 0 already.
-      scatter(d, group_.start, group_.gain, lane0_, lanes, top, at_top, gain);
+      if constexpr (!kStoresPairs)
+        scatter<kValueStep>(d, group_.start, group_.gain, lane0_, lanes, top, at_top, gain);
     }
     row_ = hn::IfThenElse(lanes, rows, row_);
     update_slope();
@@ -360,6 +366,8 @@ class HorizonWalk {
 
   // Keeps a quotient of two zeros from being NaN.
   static V smallest_divisor() { return hn::Set(D(), T(1e-30)); }
+
+  static constexpr bool kStoresPairs = kValueStep == 2 && sizeof(T) == 4;
 
   int lane0_;
   PathReader<D> reader_;

@@ -62,8 +62,8 @@ struct ColumnCamera {
 };
 
 // Holds the state of up to kMaxLanes neighbouring columns. Rows [row, row_end) of a column are not resolved
-// yet. A run of resolved rows that show one facet is stored at its last row: `start[row * kMaxLanes + lane]` is
-// the inverse horizontal distance there, which changes by `gain` (at most 0) per unit of slope. Lower rows are
+// yet. A run of resolved rows that show one facet is stored at its last row: `start[row * kMaxLanes + lane * value_step()]`
+// is the inverse horizontal distance there, which changes by `gain` (at most 0, same index) per unit of slope. Lower rows are
 // nearer, so their inverse distances are sums of positive terms, exact but for rounding. `start` is 0 elsewhere.
 struct ColumnGroup {
   alignas(64) double azimuth[3][kMaxLanes];  // A, in the axes of the current face
@@ -80,8 +80,9 @@ struct ColumnGroup {
   alignas(64) float run_start[kMaxLanes];
   alignas(64) float run_gain[kMaxLanes];
   alignas(64) float run_slope[kMaxLanes];
-  float* start = nullptr;  // rows * kMaxLanes, at a multiple of 64 bytes
-  float* gain = nullptr;   // rows * kMaxLanes, at a multiple of 32 bytes
+  // For one row more than there are, at a multiple of 64 bytes. `gain` is start + 1 where value_step() is 2.
+  float* start = nullptr;
+  float* gain = nullptr;
   double least_slope = 0;  // of all unresolved rows before row_stop; infinite when there are none
   int columns = 0;
 };
@@ -122,6 +123,10 @@ void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::pt
 
 // Returns the number of columns that this machine casts at once, at most kMaxLanes.
 int column_lanes();
+
+// Returns how many floats a column's value in ColumnGroup::start and gain is before the next column's: 2 where both alternate, which
+// ranges (Rows::has_ranges) never do, else 1.
+int value_step();
 
 // Returns the name of the instruction set that is used.
 const char* column_target();
