@@ -2,17 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
 #include "paging/planet/planet_look.h"
-#include "paging/surface/place_cursor.h"
+#include "paging/surface/height_cursor.h"
 #include "paging/surface/query.h"
 #include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/core/appearance/layer_list.h"
 
 namespace vpe::app {
+namespace {
+
+// Largest shift of an image's places by their heights' errors.
+constexpr double kDrapedShift_px = 0.05;
+
+// Computes how far heights may be off, direction by direction, without being seen in an image.
+class HeightErrors {
+ public:
+  HeightErrors(const core::View& view, const paging::PlanetFile& planet, double exaggeration)
+      : camera_m_(view.camera.position_m), radius_m_(planet.radius_m()), exaggeration_(exaggeration) {
+    for (const lod::TileInfo& tile : planet.tree().tiles().first(6))
+      relief_m_ = std::max({relief_m_, exaggeration * tile.max_height_m, -exaggeration * tile.min_height_m});
+    // The pixels of a radian, at a perspective image's corners, or of a round one's columns.
+    const double focal_px = core::focal_px(view);
+    px_per_rad_ = std::max(focal_px, view.width / (2 * mars::kPi));
+    if (view.projection == core::Projection::kPerspective) {
+      const double x_px = 0.5 * view.width + std::abs(view.principal_offset_px.x);
+      const double y_px = 0.5 * view.height + std::abs(view.principal_offset_px.y);
+      px_per_rad_ = focal_px * (1 + (x_px * x_px + y_px * y_px) / (focal_px * focal_px));
+    }
+  }
+
+  double most_error_m(const glm::dvec3& direction) const {
+    // No point in the direction is nearer than the line through it, and no ground than the planet's relief allows.
+    const double aside_m = glm::length(glm::cross(camera_m_, direction));
+    const double nearest_m = std::max(aside_m, glm::length(direction * radius_m_ - camera_m_) - relief_m_);
+    return kDrapedShift_px * nearest_m / (px_per_rad_ * exaggeration_);
+  }
+
+ private:
+  glm::dvec3 camera_m_;
+  double radius_m_;
+  double exaggeration_;
+  double relief_m_ = 0;
+  double px_per_rad_ = 1;
+};
+
+}  // namespace
+
 FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
     : planet_(std::move(planet)),
       surface_(planet_, std::size_t{16} << 20),
@@ -73,8 +113,11 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const Fram
     };
   }
   add_layers(settings, scene);
-  paging::PlaceCursor cursor(surface_);
-  scene.ground_m = [&cursor](const glm::dvec3& direction) { return cursor.move_to(direction).height_m; };
+  paging::HeightCursor cursor(surface_);
+  const HeightErrors errors(request.view, *planet_, scene.appearance.exaggeration);
+  scene.ground_m = [&cursor, &errors](const glm::dvec3& direction) {
+    return cursor.height_m(direction, errors.most_error_m(direction));
+  };
   if (settings.time_code == core::TimeCode::kSolar) {
     const auto sun = sun_statement(settings, mars::lon_lat(request.view.camera.position_m));
     if (sun) scene.solar = {sun->true_solar_time_h, sun->solar_longitude_deg};
