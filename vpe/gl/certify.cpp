@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
+#include "mars/geodesy/cube.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/tile_id.h"
 
@@ -65,35 +69,191 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   return c;
 }
 
-double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
-                      const DrawnPixels& pixels, const FrameOptics& optics) {
-  std::vector<std::array<float, kTileParts>> nearest(tiles.size(),
-                                                     {core::kSkyRange, core::kSkyRange, core::kSkyRange});
-  float nearest_m = core::kSkyRange;
+namespace {
+
+double steepness(std::span<const CertifiedTile> tiles, const lod::TileTree& tree, double exaggeration) {
+  double slope = 0;
+  for (const CertifiedTile& t : tiles)
+    slope = std::max(slope, tree.steepest_slope(tree[t.tile->index], exaggeration));
+  return std::sqrt(1.0 + slope * slope);
+}
+
+// What all pixels of an image have in common.
+struct ImageTerms {
+  FrameOptics optics;
+  double range_error = 0;
+  double nearest_m = 0;
+  double steep = 1;
+
+  double distance_m(double range_m) const {
+    return std::max(range_m * (1.0 - range_error * (1.0 + range_m / nearest_m)), nearest_m);
+  }
+  double snap_px(TilePart part) const {
+    return part == TilePart::kSurface ? std::min(optics.snap_px, optics.surface_snap_px) : optics.snap_px;
+  }
+  // The bound of what appears at a distance, with a geometric error.
+  double bound_px(const CertifiedTile& tile, TilePart part, double geometric_error_m, double distance_m) const {
+    return geometric_error_m * optics.focal_px / distance_m +
+           (storage_px(tile, distance_m, optics.focal_px) + snap_px(part)) * steep;
+  }
+};
+
+// Nearest ranges by part of each tile.
+struct NearestRanges {
+  std::vector<std::array<float, kTileParts>> of;
+  float all = core::kSkyRange;
+};
+
+NearestRanges nearest_ranges(std::size_t tiles, const DrawnPixels& pixels) {
+  NearestRanges nearest{{tiles, {core::kSkyRange, core::kSkyRange, core::kSkyRange}}};
   for (std::size_t k = 0; k < pixels.range_m.size(); ++k) {
     if (pixels.id[k] == kNoTile) continue;
     const TileId drawn = unpack(pixels.id[k]);
-    float& least = nearest[drawn.tile][static_cast<std::size_t>(drawn.part)];
+    float& least = nearest.of[drawn.tile][static_cast<std::size_t>(drawn.part)];
     least = std::min(least, pixels.range_m[k]);
-    nearest_m = std::min(nearest_m, pixels.range_m[k]);
+    nearest.all = std::min(nearest.all, pixels.range_m[k]);
   }
-  double slope = 0;
-  for (const CertifiedTile& t : tiles)
-    slope = std::max(slope, tree.steepest_slope(tree[t.tile->index], optics.exaggeration));
-  const double steep = std::sqrt(1.0 + slope * slope);
-  double bound_px = 0;
-  for (std::size_t k = 0; k < tiles.size(); ++k) {
+  return nearest;
+}
+
+// Visits the parts of tiles in the image with their nearest distances.
+template <typename Visit>
+void for_parts(const NearestRanges& nearest, const ImageTerms& terms, const Visit& visit) {
+  for (std::size_t k = 0; k < nearest.of.size(); ++k) {
     for (std::size_t part = 0; part < kTileParts; ++part) {
-      const auto range_m = static_cast<double>(nearest[k][part]);
-      if (std::isinf(range_m)) continue;
-      const double distance_m =
-          std::max(range_m * (1.0 - pixels.range_error * (1.0 + range_m / nearest_m)), double{nearest_m});
-      const bool skirt = part == static_cast<std::size_t>(TilePart::kSkirt);
-      const double geometric_error_m =
-          tiles[k].tile->geometric_error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
-      bound_px =
-          std::max(bound_px, geometric_error_m * optics.focal_px / distance_m +
-                                 (storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px) * steep);
+      const auto range_m = static_cast<double>(nearest.of[k][part]);
+      if (!std::isinf(range_m)) visit(k, static_cast<TilePart>(part), terms.distance_m(range_m));
+    }
+  }
+}
+
+// Returns the bound of the error of the tiles across the skirts of a tile.
+double most_across_m(const CertifiedTile& tile) {
+  return std::max(0.0, tile.deepest_skirt_m - tile.tile->geometric_error_m);
+}
+
+// Finds the geometric errors of ground where pixels show it.
+class GroundErrors {
+ public:
+  GroundErrors(std::span<const CertifiedTile> tiles, const core::View& view, const ImageTerms& terms,
+               const BlockErrorsOf& errors)
+      : tiles_(tiles), view_(view), terms_(terms), errors_(errors), blocks_(tiles.size()) {
+    for (std::size_t k = 0; k < tiles.size(); ++k) drawn_.emplace(tiles[k].tile->key, k);
+  }
+
+  double at(std::size_t tile, TilePart part, const glm::dvec2& pixel, double range_m) {
+    const double moved_px = terms_.snap_px(part) + storage_px(tiles_[tile], range_m, terms_.optics.focal_px);
+    const double moved_m =
+        1.01 * range_m *
+        (moved_px / terms_.optics.focal_px + terms_.range_error * (1.0 + range_m / terms_.nearest_m));
+    const glm::dvec3 place = view_.camera.position_m + range_m * core::pixel_ray(view_, pixel.x, pixel.y);
+    const double own_m = bound_m(tile, place, moved_m);
+    return part == TilePart::kSkirt ? std::max(own_m, across_m(tile, place, moved_m)) : own_m;
+  }
+
+ private:
+  // The error of a tile within a distance of a place.
+  double bound_m(std::size_t tile, const glm::dvec3& place, double moved_m) {
+    const lod::SelectedTile& t = *tiles_[tile].tile;
+    std::optional<std::shared_ptr<const lod::BlockErrors>>& blocks = blocks_[tile];
+    if (!blocks) blocks = errors_(t);
+    const double out_m = glm::dot(mars::face_axes(t.key.face).out, place) - moved_m;
+    if (*blocks == nullptr || !(out_m > 0)) return t.geometric_error_m;
+    const mars::ChartPoint p = mars::chart_on(t.key.face, place);
+    // A coordinate is a ratio of two that are moved by at most that each.
+    const double reach = moved_m * (1.0 + std::max(std::abs(p.u), std::abs(p.v))) / out_m;
+    return std::min((*blocks)->largest_m(p.u, p.v, reach), t.geometric_error_m);
+  }
+
+  // The errors of the tiles across the border at a place, which are found by steps over it.
+  double across_m(std::size_t tile, const glm::dvec3& place, double moved_m) {
+    const double most_m = most_across_m(tiles_[tile]);
+    const mars::FaceAxes& axes = mars::face_axes(tiles_[tile].tile->key.face);
+    double error = 0;
+    bool any = false;
+    for (int n = 0; n < 9; ++n) {
+      const glm::dvec3 step =
+          static_cast<double>(n % 3 - 1) * axes.right + static_cast<double>(n / 3 - 1) * axes.up;
+      const std::optional<std::size_t> there = drawn_at(mars::chart_point(place + 3.0 * moved_m * step));
+      if (there == tile) continue;
+      if (!there) return most_m;
+      error = std::max(error, bound_m(*there, place, moved_m));
+      any = true;
+    }
+    return any ? std::min(error, most_m) : most_m;
+  }
+
+  std::optional<std::size_t> drawn_at(const mars::ChartPoint& point) const {
+    for (int level = lod::kMaxLevel; level >= 0; --level) {
+      const auto found = drawn_.find(lod::tile_at(point, level));
+      if (found != drawn_.end()) return found->second;
+    }
+    return std::nullopt;
+  }
+
+  std::span<const CertifiedTile> tiles_;
+  const core::View& view_;
+  const ImageTerms& terms_;
+  const BlockErrorsOf& errors_;
+  std::vector<std::optional<std::shared_ptr<const lod::BlockErrors>>> blocks_;  // nullopt: not asked for yet
+  std::unordered_map<lod::TileKey, std::size_t, lod::TileKeyHash> drawn_;
+};
+
+}  // namespace
+
+double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
+                      const DrawnPixels& pixels, const FrameOptics& optics) {
+  const NearestRanges nearest = nearest_ranges(tiles.size(), pixels);
+  const ImageTerms terms{optics, pixels.range_error, nearest.all, steepness(tiles, tree, optics.exaggeration)};
+  double bound_px = 0;
+  for_parts(nearest, terms, [&](std::size_t k, TilePart part, double distance_m) {
+    const double skirt_m = part == TilePart::kSkirt ? tiles[k].deepest_skirt_m : 0.0;
+    bound_px = std::max(bound_px,
+                        terms.bound_px(tiles[k], part, tiles[k].tile->geometric_error_m + skirt_m, distance_m));
+  });
+  return bound_px;
+}
+
+double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
+                      const DrawnPixels& pixels, const FrameOptics& optics, const core::View& view,
+                      const BlockErrorsOf& errors) {
+  const NearestRanges nearest = nearest_ranges(tiles.size(), pixels);
+  const ImageTerms terms{optics, pixels.range_error, nearest.all, steepness(tiles, tree, optics.exaggeration)};
+  std::vector<double> most_px(tiles.size(), 0.0);  // with the whole errors of tiles
+  double bound_px = 0;                             // without any, and with those that were looked at
+  for_parts(nearest, terms, [&](std::size_t k, TilePart part, double distance_m) {
+    const double beside_m = part == TilePart::kSkirt ? most_across_m(tiles[k]) : 0.0;
+    const double bound_m = std::max(tiles[k].tile->geometric_error_m, beside_m);
+    most_px[k] = std::max(most_px[k], terms.bound_px(tiles[k], part, bound_m, distance_m));
+    bound_px = std::max(bound_px, terms.bound_px(tiles[k], part, 0.0, distance_m));
+  });
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < tiles.size(); ++k)
+    if (most_px[k] > bound_px) order.push_back(k);
+  if (order.empty()) return bound_px;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return most_px[a] > most_px[b]; });
+  // The pixels of each of these tiles.
+  std::vector<std::vector<std::uint32_t>> shown(tiles.size());
+  for (std::size_t n = 0; n < pixels.id.size(); ++n) {
+    if (pixels.id[n] == kNoTile) continue;
+    const std::size_t k = unpack(pixels.id[n]).tile;
+    if (most_px[k] > bound_px) shown[k].push_back(static_cast<std::uint32_t>(n));
+  }
+  const core::SubRectangle drawn = core::drawn_part(view);
+  const auto width = static_cast<std::uint32_t>(drawn.width);
+  GroundErrors ground(tiles, view, terms, errors);
+  for (const std::size_t k : order) {
+    if (most_px[k] <= bound_px) break;
+    for (const std::uint32_t n : shown[k]) {
+      const TilePart part = unpack(pixels.id[n]).part;
+      const auto range_m = static_cast<double>(pixels.range_m[n]);
+      const double distance_m = terms.distance_m(range_m);
+      const double beside_m = part == TilePart::kSkirt ? most_across_m(tiles[k]) : 0.0;
+      const double most_m = std::max(tiles[k].tile->geometric_error_m, beside_m);
+      if (terms.bound_px(tiles[k], part, most_m, distance_m) <= bound_px) continue;
+      const glm::dvec2 pixel(drawn.x + 0.5 + n % width, drawn.y + 0.5 + n / width);
+      const double bound_m = ground.at(k, part, pixel, range_m);
+      bound_px = std::max(bound_px, terms.bound_px(tiles[k], part, bound_m, distance_m));
     }
   }
   return bound_px;

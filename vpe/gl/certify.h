@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <span>
 
+#include "lod/mesh/block_errors.h"
 #include "lod/select.h"
 #include "vpe/core/certificate.h"
+#include "vpe/core/view.h"
 
 namespace vpe::gl {
 
@@ -22,6 +27,8 @@ struct FrameOptics {
   double near_m = 1;   // near plane: nothing is drawn nearer
   double snap_px = 0;  // TileDrawer::snap_px()
   double exaggeration = 1;
+  double surface_snap_px =
+      std::numeric_limits<double>::infinity();  // the same of surfaces, if that is less: surface_snap_px()
 };
 
 // Returns a certificate with the terms of error, exaggeration, tiles_drawn and share_at_data_limit filled in.
@@ -53,8 +60,20 @@ struct DrawnPixels {
 };
 
 // Returns Certificate::image_bound_px: the bound above with the ranges at which tiles appear, for each of a
-// tile's parts separately. Visible parts of a skirt are at most the skirt's depth below the border of its tile.
+// tile's parts separately. Visible parts of a skirt are at most the skirt's depth below the border of its tile. Surfaces are
+// moved by no more than surface_snap_px.
 double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
                       const DrawnPixels& pixels, const FrameOptics& optics);
+
+// Returns the same, closer: what a pixel shows is a point of a mesh moved as above, and by the error of its range. So its
+// geometric error is that of the blocks within this reach. A point of a skirt in sight lies between its own border and
+// that of the tile across, so the larger of both errors holds for it; the tile across has at most what the skirt is deeper than
+// its own tile's error. Looks at the tiles with the largest bounds first, and at no tile that cannot change the result.
+//
+// errors: of a tile's mesh by block; null: its bound holds everywhere. view: of the image, perspective.
+using BlockErrorsOf = std::function<std::shared_ptr<const lod::BlockErrors>(const lod::SelectedTile& tile)>;
+double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
+                      const DrawnPixels& pixels, const FrameOptics& optics, const core::View& view,
+                      const BlockErrorsOf& errors);
 
 }  // namespace vpe::gl

@@ -45,6 +45,7 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
   if (features.haze) define(head, "HAZE");
   if (features.placed) define(head, "PLACED");
   if (features.light) define(head, "LIGHT");
+  if (features.thin) define(head, "THIN");
   if (features.texture || features.nodata) define(head, "CHART");
   const bool skirt = part == TilePart::kSkirt;
   ShaderSources out;

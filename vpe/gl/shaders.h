@@ -35,6 +35,7 @@ inline constexpr auto kTileUniforms = std::to_array<std::string_view>({
     "first_facet",    // int: facet of the first primitive
     "flat_colour",    // vec4: alpha > 0: this colour instead of the texture, else a factor on it
     "tint",           // vec4: this colour takes the share alpha
+    "thin_tint",      // vec4: the tint of thin triangles; THIN only
     "tile_sides",     // vec3: the tile's sides in u and v; log2 of the most periods of stripes in a unit of the
                       // chart; NODATA only
     "tile_phase",     // uint: u + v at the tile's southwest corner, its fraction in 2^-32; NODATA only
@@ -83,6 +84,7 @@ struct TileFeatures {
   bool placed = false;  // texture coordinates come from positions, not from vertices: within 1e-7 of the face
   bool light = false;   // colours are multiplied with light of the vertices
   bool by_triangle = false;  // of surfaces: corners are put on the rasteriser's grid triangle by triangle
+  bool thin = false;  // of surfaces by triangle: nothing but the tint is drawn, another one for thin triangles
   auto operator<=>(const TileFeatures&) const = default;
 };
 

@@ -28,6 +28,7 @@ Program make_part(TilePart part, const TileFeatures& features) {
 TileFeatures TileDrawer::features_of(const TileDraw& tile, TilePart part) const {
   TileFeatures features;
   features.by_triangle = part == TilePart::kSurface && tile.by_triangle;
+  features.thin = features.by_triangle && first_with_id_ != nullptr;
   if (first_with_id_ != nullptr) return features;
   features.facets = tile.texture != nullptr && tile.texture->intervals == 0;
   features.texture = tile.texture != nullptr && !features.facets;
@@ -141,9 +142,15 @@ void TileDrawer::use(const TileDraw& tile, const TileFeatures& features, TilePar
   glUniform1i(tile_uniform("first_foot"), static_cast<GLint>(mesh.first_foot));
   glm::vec4 tint = tile.tint;
   if (first_with_id_ != nullptr) {
-    const auto rgb = id_colour(pack({static_cast<std::size_t>(&tile - first_with_id_), part}));
-    for (int k = 0; k < 3; ++k) tint[k] = static_cast<float>(rgb[static_cast<std::size_t>(k)]) / 255.0F;
-    tint.a = 1.0F;
+    const auto tint_of = [&](TilePart of) {
+      const auto rgb = id_colour(pack({static_cast<std::size_t>(&tile - first_with_id_), of}));
+      return glm::vec4(glm::vec3(rgb[0], rgb[1], rgb[2]) / 255.0F, 1.0F);
+    };
+    tint = tint_of(part);
+    if (features.thin) {
+      const glm::vec4 thin = tint_of(TilePart::kRibbon);
+      glUniform4fv(tile_uniform("thin_tint"), 1, &thin[0]);
+    }
   }
   glUniform4fv(tile_uniform("tint"), 1, &tint[0]);
   if (features.texture || features.nodata) {

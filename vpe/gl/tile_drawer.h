@@ -115,6 +115,11 @@ class TileDrawer {
   // meshes: by the snap of a vertex, or from a border to the corner of a ribbon and its snap.
   double snap_px() const { return (kRibbonSteps + 1) * std::numbers::sqrt2 * step_px_; }
 
+  // Returns the same for what draw_tile_ids() draws as TilePart::kSurface, by triangle, in an image of this longest side: a
+  // corner's half step each way and a quarter of a step by which a rasteriser may be wrong about an edge are less
+  // than a step; depth is rounded as if it came from four roundings of the place in the image.
+  double surface_snap_px(int longest_side_px) const { return step_px_ + 0x1p-22 * longest_side_px; }
+
  private:
   static constexpr int kRibbonSteps = 3;
 

@@ -7,6 +7,7 @@
 
 namespace vpe::gl {
 
+// By triangle (TileDraw::by_triangle) those of the surface that are thinner than 3 steps of the rasteriser's grid count as ribbons.
 enum class TilePart : std::uint8_t { kSurface, kRibbon, kSkirt };
 inline constexpr std::size_t kTileParts = 3;
 

@@ -55,6 +55,10 @@ float air_length() {
 #ifdef LIGHT
 layout(location = 5) in float light;
 #endif
+#ifdef THIN
+layout(location = 6) flat in float thin;
+layout(location = LOCATION_THIN_TINT) uniform vec4 thin_tint;
+#endif
 layout(location = 0) out vec4 colour;
 #ifdef NODATA
 void show_nodata(inout vec4 colour, bool has_data);
@@ -112,5 +116,9 @@ void colour_ground() {
   float day = smoothstep(-0.15, 0.3, dot(normalize(up * (air.x + air.y) + camera_position.xyz), sun));
   colour.rgb = mix(haze.rgb * (0.08 + 0.92 * day), colour.rgb, exp(-haze.a * air_length()));
 #endif
+#ifdef THIN
+  colour.rgb = thin > 0.5 ? thin_tint.rgb : tint.rgb;
+#else
   colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
+#endif
 }

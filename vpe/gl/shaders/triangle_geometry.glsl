@@ -14,6 +14,17 @@ layout(location = LOCATION_STEPS) uniform vec2 steps;
 void interpolate(int from, int to, float share);
 
 const float kSliver_steps = 1.5;
+#ifdef THIN
+// Thinner triangles are told apart: less is certain of what they show (TileDrawer::surface_snap_px()).
+const float kThin_steps = 3.0;
+layout(location = 6) flat out float thin;
+
+// Returns how thick the triangle of three points is, steps.
+float thickness(vec2 a, vec2 b, vec2 c) {
+  float longest = max(max(distance(a, b), distance(b, c)), distance(c, a));
+  return longest > 0.0 ? abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / longest : 0.0;
+}
+#endif
 
 vec4 on_grid(vec4 p) {
   if (max(abs(p.x), abs(p.y)) < 4.0 * p.w) p.xy = round(p.xy / p.w * steps) / steps * p.w;
@@ -61,8 +72,15 @@ void main() {
     float along = clamp(dot(base, side) / (longest * longest), 0.0, 1.0);
     corner[apex].z = near * corner[apex].w * mix(1.0 / corner[left].w, 1.0 / corner[right].w, along);
   }
+#ifdef THIN
+  float least = thickness(at[0], at[1], at[2]);
+  if (corners == 4) least = min(least, thickness(at[1], at[2], at[3]));
+#endif
   for (int n = 0; n < corners; ++n) {
     gl_Position = corner[n];
+#ifdef THIN
+    thin = least < kThin_steps ? 1.0 : 0.0;
+#endif
     interpolate(behind[n], front[n], share[n]);
     EmitVertex();
   }

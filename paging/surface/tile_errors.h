@@ -1,0 +1,53 @@
+// Errors of drawn tiles by block of their ground.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "lod/mesh/block_errors.h"
+#include "lod/select.h"
+#include "paging/planet/planet_file.h"
+#include "vpe/base/lru_cache.h"
+
+namespace paging {
+
+// Measures meshes against the posts below them, when first asked, and keeps the results by last use.
+//
+// Of a finest tile the posts are the reference surface. Of a tile above finest tiles those of its children are. Higher up the
+// errors of the children's posts are added, where the planet file states them.
+//
+// Thread rule: any thread may call find().
+class TileErrors {
+ public:
+  explicit TileErrors(std::shared_ptr<const PlanetFile> planet) : planet_(std::move(planet)) {}
+
+  using Pointer = std::shared_ptr<const lod::BlockErrors>;
+
+  // Returns bounds of the geometric error of a tile's mesh. Null for full grids, whose error is 0, and where no posts say more
+  // than the tile's own bound: at another exaggeration than 1 of tiles with children, or where tiles could not be read.
+  Pointer find(const lod::SelectedTile& tile, double exaggeration);
+  // Returns the same without reading anything, or nullopt if find() would have to.
+  std::optional<Pointer> find_measured(const lod::SelectedTile& tile, double exaggeration);
+
+ private:
+  struct Key {
+    lod::TileKey tile;
+    int variant = 0;
+    double exaggeration = 1;
+    bool operator==(const Key&) const = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& k) const {
+      return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.variant);
+    }
+  };
+  bool says_more(const lod::SelectedTile& tile, double exaggeration) const;
+  double below_m(const lod::SelectedTile& tile, double exaggeration) const;
+  lod::BlockErrors measure(const lod::SelectedTile& tile, double exaggeration) const;
+
+  static constexpr std::size_t kBytes = std::size_t{4} << 20;  // some 800 tiles
+  std::shared_ptr<const PlanetFile> planet_;
+  vpe::base::LruCache<Key, lod::BlockErrors, KeyHash> kept_{kBytes};  // without blocks: could not be read
+};
+
+}  // namespace paging
