@@ -65,6 +65,37 @@ TEST(ImageGrid, VerticesMoveToWhereTheNewCameraSeesThem) {
   }
 }
 
+TEST(ImageGrid, RangesOfCornersMakeTheSameGrid) {
+  const core::View from = view_at({3, 0, 22}, 4, -8, 3);
+  const core::Frame frame = image_of(hills(), from);
+  for (const glm::ivec2 cells : {glm::ivec2(16, 12), glm::ivec2(7, 5), glm::ivec2(1, 1)}) {
+    std::vector<float> corners;
+    for (int row = 0; row <= cells.y; ++row) {
+      for (int column = 0; column <= cells.x; ++column) {
+        const int x = std::min(frame.width * column / cells.x, frame.width - 1);
+        const int y = std::min(frame.height * row / cells.y, frame.height - 1);
+        corners.push_back(frame.range_m[static_cast<std::size_t>(frame.width * y + x)]);
+      }
+    }
+    const ImageGrid all(from, frame.range_m, cells);
+    const ImageGrid few = ImageGrid::of_corners(from, corners, cells);
+    EXPECT_EQ(few.cells(), all.cells());
+    const core::View to = view_at({5, 1, 21}, 9, -3, -4);
+    std::vector<MovedVertex> a;
+    std::vector<MovedVertex> b;
+    all.move(to, a);
+    few.move(to, b);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      EXPECT_EQ(a[n].is_ahead, b[n].is_ahead);
+      EXPECT_EQ(a[n].xy_px, b[n].xy_px);
+      EXPECT_EQ(a[n].inverse_depth, b[n].inverse_depth);
+    }
+    corners.pop_back();
+    EXPECT_THROW((void)ImageGrid::of_corners(from, corners, cells), std::invalid_argument);
+  }
+}
+
 TEST(ImageGrid, TheSameViewLeavesEachVertexInItsPlace) {
   const core::View view = view_at({0, 0, 20}, 30, -20, 12);
   const ImageGrid grid(view, image_of(hills(), view).range_m, {8, 6});

@@ -1,11 +1,13 @@
 #include "vpe/app/window_painter.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "paging/planet/planet_user.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/layer_check.h"
+#include "vpe/app/scene/object_renderer.h"
 #include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/window/moved_image.h"
@@ -129,6 +131,18 @@ void add_grid(const core::DrawRequest& request, const core::DrawResult& result,
   grids.emplace_back(request.view, result.frame.range_m, window::kMovedCells);
 }
 
+// Returns the window's context on this thread, or null where it is of no use.
+std::shared_ptr<gl::Context> window_context(const window::DrawPlace& place) {
+  if (place.context == nullptr) return nullptr;
+  try {
+    place.context->make_current();
+    std::shared_ptr<gl::Context> context = gl::Context::adopt([shared = place.context] { shared->release(); });
+    return place.needs_gpu && context->info().software ? nullptr : context;
+  } catch (const std::runtime_error&) {
+    return nullptr;  // a context of the painter's own is as good
+  }
+}
+
 RenderOptions with_backend(core::Backend backend) {
   RenderOptions options;
   options.backend = backend;
@@ -179,6 +193,36 @@ window::ImageRequest as_drawn(window::ImageRequest request) {
   return request;
 }
 
+// Makes the renderer of triangles in the window's context where that is to be had, so that images can stay there.
+std::unique_ptr<core::Renderer> WindowPainter::make_ground_renderer(core::Backend backend,
+                                                                    const window::DrawPlace& place) {
+  const Common common = share_of(common_, *planet_);
+  handover_.reset();
+  const std::shared_ptr<gl::Context> context =
+      backend == core::Backend::kPolygon ? window_context(place) : nullptr;
+  if (context == nullptr) return make_renderer(with_backend(backend), common, planet_);
+  auto handover = std::make_shared<gl::TextureHandover>();
+  gl::RendererOptions options;
+  options.memory_bytes = memory_bytes(common);
+  options.threads = common.threads;
+  options.handover = handover;
+  auto renderer =
+      with_objects(gl::make_polygon_renderer(context, planet_, options), planet_,
+                   {.threads = common.threads, .note = [quiet = common.quiet](const std::string& note) {
+                      if (!quiet) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+                    }});
+  handover_ = std::move(handover);
+  return renderer;
+}
+
+// Takes an image that was left in the window's texture, and its ranges.
+void WindowPainter::take_texture(const core::DrawRequest& request, window::DrawnImage& drawn) {
+  drawn.is_in_texture = true;
+  drawn.drawn = handover_->drawn;
+  if (!handover_->range_m.empty())
+    drawn.grids.push_back(warp::ImageGrid::of_corners(request.view, handover_->range_m, window::kMovedCells));
+}
+
 void WindowPainter::draw_pair(const window::ImageRequest& request, const core::DrawRequest& draw_request,
                               window::DrawnImage& drawn) {
   StereoArguments stereo;
@@ -206,7 +250,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     renderer_.reset();
     earlier_renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
-    renderer_ = make_renderer(with_backend(backend), share_of(common_, *planet_), planet_);
+    renderer_ = make_ground_renderer(backend, request.place);
     if (shown_ != planet_) paging::change_planet(*renderer_, shown_);
     backend_ = backend;
   }
@@ -228,6 +272,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     if (!left_out.empty() && left_out != told_) drawn.result.failures.push_back(left_out);
     told_ = left_out;
   };
+  if (handover_) *handover_ = {};
   if (request.stereo) {
     draw_pair(request, draw_request, drawn);
     tell_left_out();
@@ -235,12 +280,18 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     return drawn;
   }
   draw_request.view = core::with_margin(draw_request.view, request.margin_px);
+  if (handover_)
+    *handover_ = {
+        .texture = request.place.texture, .unused = request.place.unused, .cells = window::kMovedCells};
   drawn.result = draw(draw_request, request.flight_time_s);
   tell_left_out();
   drawn.result.settled = drawn.result.settled && !has_other_palette;
   if (request.with_earlier && planet_->earlier()) draw_earlier(draw_request, request, drawn);
   core::Frame& frame = drawn.result.frame;
-  add_grid(draw_request, drawn.result, drawn.grids);
+  if (handover_ && handover_->is_drawn)
+    take_texture(draw_request, drawn);
+  else
+    add_grid(draw_request, drawn.result, drawn.grids);
   if (request.keeps_ranges && !drawn.grids.empty()) drawn.range_m = std::move(frame.range_m);
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};

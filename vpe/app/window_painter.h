@@ -11,6 +11,7 @@
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/flight_ground.h"
+#include "vpe/gl/polygon_renderer.h"
 #include "vpe/window/workers/painter.h"
 
 namespace vpe::app {
@@ -48,6 +49,8 @@ class WindowPainter : public window::Painter {
   // Goes over to the planet as the flight has changed it at the request's time, and then its reliefs.
   void change_ground(const window::ImageRequest& request);
   bool take_palette(core::DrawRequest& request, window::DrawnImage& drawn);
+  std::unique_ptr<core::Renderer> make_ground_renderer(core::Backend backend, const window::DrawPlace& place);
+  void take_texture(const core::DrawRequest& request, window::DrawnImage& drawn);
 
   std::shared_ptr<const paging::PlanetFile> planet_;  // as its file is
   std::shared_ptr<const paging::PlanetFile> shown_;   // with the changes of a flight
@@ -57,6 +60,8 @@ class WindowPainter : public window::Painter {
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
+  // Shared with renderer_ where that draws in the window's context, else null.
+  std::shared_ptr<gl::TextureHandover> handover_;
   // Draw the planet that this one is compared with, once it is needed.
   std::unique_ptr<core::Renderer> earlier_renderer_;
   std::unique_ptr<FrameOverlays> earlier_overlays_;

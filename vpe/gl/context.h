@@ -1,6 +1,7 @@
 // An OpenGL 4.5 core context without a window.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -17,7 +18,7 @@ struct ContextInfo {
   std::string vendor;
   std::string renderer;
   std::string version;
-  std::string platform;   // "EGL device", "EGL surfaceless" or "OSMesa"
+  std::string platform;   // "EGL device", "EGL surfaceless", "OSMesa" or "window"
   bool software = false;  // no GPU: llvmpipe, softpipe, ...
 };
 
@@ -37,6 +38,10 @@ class Context {
   // Makes a context. Prefers hardware EGL devices, then Mesa's surfaceless platform, then software devices;
   // $VPE_EGL = device | surfaceless restricts the choice. Throws ContextError.
   static std::unique_ptr<Context> create();
+  // Takes over the context of a window, which is current on this thread. `release` ends that: it is called on this thread
+  // when the context is destroyed, and before an error. Throws ContextError where it has no OpenGL 4.5, and always in
+  // builds with OSMesa.
+  static std::unique_ptr<Context> adopt(std::function<void()> release);
   virtual ~Context() = default;
 
   const ContextInfo& info() const { return info_; }

@@ -49,6 +49,9 @@ VPE_FORWARD(void, glNamedBufferStorage, (GLuint buffer, GLsizeiptr size, const v
 VPE_FORWARD(void, glNamedFramebufferRenderbuffer,
             (GLuint framebuffer, GLenum attachment, GLenum renderbuffertarget, GLuint renderbuffer),
             (framebuffer, attachment, renderbuffertarget, renderbuffer))
+VPE_FORWARD(void, glNamedFramebufferTexture,
+            (GLuint framebuffer, GLenum attachment, GLuint texture, GLint level),
+            (framebuffer, attachment, texture, level))
 VPE_FORWARD(void, glNamedRenderbufferStorage,
             (GLuint renderbuffer, GLenum internalformat, GLsizei width, GLsizei height),
             (renderbuffer, internalformat, width, height))

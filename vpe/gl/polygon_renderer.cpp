@@ -2,12 +2,15 @@
 #include "paging/planet/planet_look.h"
 #include "paging/planet/planet_user.h"
 #include "paging/surface/surface.h"
+#include "paging/surface/tile_errors.h"
 #include "vpe/core/appearance/sky.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <stdexcept>
@@ -57,9 +60,11 @@ class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
       : context_(std::move(context)),
         planet_(std::move(planet)),
         surface_(planet_, kSurfaceBytes),
+        errors_(std::make_shared<paging::TileErrors>(planet_)),
         pool_(options.threads),
         scene_(planet_, options),
         tiles_(planet_->radius_m()),
+        handover_(options.handover),
         empty_array_(VertexArray::make()) {
     const bool halved = base::mutated(base::Guard::kReversedDepth);
     glClipControl(GL_LOWER_LEFT, halved ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
@@ -80,22 +85,34 @@ class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
   std::optional<double> draw_image(const core::DrawRequest& request, const ClipProjection& clip,
                                    core::DrawResult& result);
   void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
+  static float range_of(const core::View& view, const ClipProjection& clip, glm::ivec2 pixel, float depth);
   static void ranges_of(const core::View& view, const ClipProjection& clip, std::span<float> depths);
+  bool may_hand_over(const core::DrawRequest& request) const;
+  void hand_over(const Target& image, const core::DrawRequest& request, const ClipProjection& clip);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
   core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip,
                             const core::Frame& frame);
+  double bound_in_image(const core::DrawRequest& request, const FrameOptics& optics, const core::Frame& frame);
+  std::function<void()> measurement(const core::DrawRequest& request, const FrameOptics& optics,
+                                    const core::Frame& frame) const;
   void state(const core::DrawRequest& request, core::Certificate& c) const;
   bool is_below_ground(const core::DrawRequest& request) const;
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::Surface surface_;  // below the camera
+  paging::Surface surface_;                     // below the camera
+  std::shared_ptr<paging::TileErrors> errors_;  // of this planet
+  std::future<void> measuring_;                 // errors that a frame lacked
+  bool settled_ = true;                         // the frame's tiles are
+  bool lacks_errors_ = false;                   // the frame's bound is not as close as it will be
   base::ThreadPool pool_;
   TileScene scene_;
   TileDrawer tiles_;
   std::shared_ptr<const core::ColourScale> palette_;  // the one that tiles_ has; null: none
   Program sky_program_;                               // made for the first sky
+  std::shared_ptr<TextureHandover> handover_;         // null: images are pixels
+  std::optional<TextureFinish> finish_;               // made for the first image that is handed over
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
   std::optional<Target> range_target_;
@@ -168,16 +185,51 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
                           glm::length(t.mesh->centre_m - request.view.camera.position_m),
                           *std::max_element(t.skirt_m.begin(), t.skirt_m.end())});
   }
+  const glm::ivec2 size = core::drawn_size(request.view);
   const FrameOptics optics{core::focal_px(request.view), clip.near_m, tiles_.snap_px(),
-                           request.settings.exaggeration};
+                           request.settings.exaggeration, tiles_.surface_snap_px(std::max(size.x, size.y))};
   core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(), optics);
   if (request.want_range) {
-    const double bound_px =
-        bound_in_image(certified_, planet_->tree(), {tile_ids_, frame.range_m, kRangeError}, optics);
-    c.image_bound_px = std::min(bound_px, c.shift_bound_px);
+    c.image_bound_px = std::min(bound_in_image(request, optics, frame), c.shift_bound_px);
   }
   state(request, c);
   return c;
+}
+
+// Frames that do not wait must not read tiles. What a settled one lacks is measured beside the frames that follow, of
+// which the image is not settled either.
+double PolygonRenderer::bound_in_image(const core::DrawRequest& request, const FrameOptics& optics,
+                                       const core::Frame& frame) {
+  const auto bound_px = [&](const BlockErrorsOf& errors) {
+    return gl::bound_in_image(certified_, planet_->tree(), {tile_ids_, frame.range_m, kRangeError}, optics,
+                              request.view, errors);
+  };
+  const double x = optics.exaggeration;
+  if (request.paging.wait)
+    return bound_px([&](const lod::SelectedTile& tile) { return errors_->find(tile, x); });
+  const double known_px = bound_px([&](const lod::SelectedTile& tile) {
+    const std::optional<paging::TileErrors::Pointer> found = errors_->find_measured(tile, x);
+    lacks_errors_ |= !found;
+    return found.value_or(nullptr);
+  });
+  const bool measures =
+      measuring_.valid() && measuring_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  if (lacks_errors_ && settled_ && !measures)
+    measuring_ = std::async(std::launch::async, measurement(request, optics, frame));
+  return known_px;
+}
+
+// Asks for all errors that the bound of an image needs. Holds copies of all that it uses.
+std::function<void()> PolygonRenderer::measurement(const core::DrawRequest& request, const FrameOptics& optics,
+                                                   const core::Frame& frame) const {
+  std::vector<lod::SelectedTile> tiles;
+  for (const CertifiedTile& t : certified_) tiles.push_back(*t.tile);
+  return [tiles = std::move(tiles), certified = certified_, planet = planet_, ids = tile_ids_,
+          ranges = frame.range_m, view = request.view, optics, errors = errors_]() mutable {
+    for (std::size_t k = 0; k < tiles.size(); ++k) certified[k].tile = &tiles[k];
+    gl::bound_in_image(certified, planet->tree(), {ids, ranges, kRangeError}, optics, view,
+                       [&](const lod::SelectedTile& tile) { return errors->find(tile, optics.exaggeration); });
+  };
 }
 
 // States what does not depend on the tiles.
@@ -316,6 +368,16 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjectio
   ranges_of(request.view, clip, frame.range_m);
 }
 
+// Returns the range of a pixel of the drawn part by its value of the depth buffer.
+float PolygonRenderer::range_of(const core::View& view, const ClipProjection& clip, glm::ivec2 pixel,
+                                float depth) {
+  if (depth <= 0.0F) return core::kSkyRange;
+  const glm::dvec2 centre = 0.5 * glm::dvec2(view.width, view.height) + view.principal_offset_px -
+                            glm::dvec2(view.part.x, view.part.y);
+  const glm::dvec2 p = (glm::dvec2(pixel) + 0.5 - centre) / core::focal_px(view);
+  return static_cast<float>(clip.near_m / static_cast<double>(depth) * std::sqrt(1.0 + p.x * p.x + p.y * p.y));
+}
+
 // Replaces values of the depth buffer by ranges.
 void PolygonRenderer::ranges_of(const core::View& view, const ClipProjection& clip, std::span<float> depths) {
   const glm::ivec2 size = core::drawn_size(view);
@@ -347,6 +409,11 @@ std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& reque
   scene_.record_draw_time(result.stats.draw_ms);
 
   start = Clock::now();
+  if (may_hand_over(request)) {
+    hand_over(image, request, clip);
+    result.stats.read_ms = ms_since(start);
+    return 0.0;
+  }
   image.read_colour(result.frame.colour);
   const std::optional<double> nodata = nodata_share(settings.mode, image);
   const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
@@ -363,6 +430,39 @@ std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& reque
   return nodata;
 }
 
+// Returns true if nothing of the image's pixels is needed here. Lines are rare, and the share of nodata is counted on the CPU.
+bool PolygonRenderer::may_hand_over(const core::DrawRequest& request) const {
+  const core::Mode mode = request.settings.mode;
+  return handover_ && handover_->texture != 0 && !request.want_range && mode != core::Mode::kWireframe &&
+         mode != core::Mode::kMarkers && std::ranges::none_of(draws_, [](const TileDraw& t) {
+           return t.texture != nullptr && t.texture->nodata;
+         });
+}
+
+// Leaves the image that was drawn in the window's texture.
+void PolygonRenderer::hand_over(const Target& image, const core::DrawRequest& request,
+                                const ClipProjection& clip) {
+  const core::SettingsValues& settings = request.settings;
+  const bool one_sample = settings.samples == 1;
+  const glm::ivec2 cells = one_sample && request.want_rough_range ? handover_->cells : glm::ivec2(0);
+  if (handover_->unused != nullptr) glWaitSync(static_cast<GLsync>(handover_->unused), 0, GL_TIMEOUT_IGNORED);
+  if (!finish_) finish_.emplace();
+  std::vector<float> depths =
+      finish_->draw(image, handover_->texture, {one_sample && settings.smooth_edges, settings.gamma, cells});
+  const glm::ivec2 size(image.width(), image.height());
+  for (std::size_t n = 0; n < depths.size(); ++n) {
+    const glm::ivec2 corner(static_cast<int>(n) % (cells.x + 1), static_cast<int>(n) / (cells.x + 1));
+    const glm::ivec2 pixel = glm::min(size * corner / cells, size - 1);
+    depths[n] = range_of(request.view, clip, pixel, depths[n]);
+  }
+  handover_->range_m = std::move(depths);
+  handover_->bytes = finish_->bytes();
+  handover_->drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+  handover_->is_drawn = true;
+  check_gl("hand over the image");
+}
+
 void PolygonRenderer::change_planet(std::shared_ptr<const paging::PlanetFile> planet) {
   go_over_to(paging::keep_layers(std::move(planet), planet_));
 }
@@ -373,6 +473,7 @@ void PolygonRenderer::go_over_to(std::shared_ptr<const paging::PlanetFile> plane
   draws_.clear();
   scene_.change_planet(planet);
   surface_.change_planet(planet);
+  errors_ = std::make_shared<paging::TileErrors>(planet);
   planet_ = std::move(planet);
 }
 
@@ -409,7 +510,10 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
 
   // The programs of images are kept while ranges are drawn between them.
   if (request.want_colour) tiles_.drop_unused();
+  settled_ = result.settled;
+  lacks_errors_ = false;
   result.certificate = certify(request, clip, result.frame);
+  if (lacks_errors_) result.settled = false;
   if (has_rough_range_) result.frame.range_m.swap(depth_);
   result.certificate.nodata_share = nodata;
   result.certificate.tiles_missing = result.stats.tiles_missing;

@@ -1,14 +1,32 @@
 // Polygon backend: draws selected tiles as textured triangle meshes.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <memory>
+#include <vector>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::gl {
+
+// Lets images stay in textures of a window whose context shares objects with the renderer's (Context::adopt). The caller
+// fills in what it wants before each draw(); the renderer fills in the rest. core::Frame::colour stays empty then.
+struct TextureHandover {
+  unsigned texture = 0;  // OpenGL's name; its storage is made by the renderer. 0: pixels are wanted
+  void* unused =
+      nullptr;  // GLsync, which is passed once the window no longer draws the texture; null: it does not
+  glm::ivec2 cells{0,
+                   0};  // ranges are wanted at their corners where the request wants rough ranges; 0: nowhere
+
+  bool is_drawn = false;            // false: the image needs the CPU, and is in the frame
+  void* drawn = nullptr;            // GLsync, which is passed once the image is drawn; the caller deletes it
+  std::vector<float> range_m = {};  // as core::Frame::range_m, of the pixels of corners (TextureFinish::draw)
+  std::size_t bytes = 0;            // of textures of the renderer's own, which only this way needs
+};
 
 struct RendererOptions {
   // CPU and GPU payloads together. Smaller: coarser textures, more loading while the camera moves, and fewer
@@ -19,6 +37,8 @@ struct RendererOptions {
   // Called by a loader on its thread before each page that it makes. May wait. An exception becomes the page's
   // failure. For tests of slow and broken storage.
   std::function<void(const lod::TileKey& tile)> before_load;
+  // Null: images are pixels.
+  std::shared_ptr<TextureHandover> handover = nullptr;
 };
 
 // Returns the number of triangles of the largest frame for which the memory is enough.

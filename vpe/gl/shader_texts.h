@@ -5,6 +5,9 @@
 
 namespace vpe::gl::shader_text {
 
+extern const std::string_view kCornerFragment;
+extern const std::string_view kFinishFragment;
+extern const std::string_view kFinishVertex;
 extern const std::string_view kGroundColour;
 extern const std::string_view kInterpolate;
 extern const std::string_view kNodataPattern;

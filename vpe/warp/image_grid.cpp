@@ -47,32 +47,59 @@ std::array<double, 6> fit_square(const std::array<double, 9>& value) {
   return {sums[0] / 9 - 2.0 / 3.0 * (squares + other), sums[1] / 6, sums[2] / 6, squares, sums[4] / 4, other};
 }
 
-}  // namespace
+glm::ivec2 corner_pixel(glm::ivec2 size, glm::ivec2 cells, glm::ivec2 corner) {
+  return glm::min(size * corner / cells, size - 1);
+}
 
-ImageGrid::ImageGrid(const core::View& view, std::span<const float> range_m, glm::ivec2 cells)
-    : view_(view), cells_(cells + 2) {
-  const core::SubRectangle part = core::drawn_part(view);
+float at(std::span<const float> range_m, int width, glm::ivec2 p) {
+  return range_m[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(p.x)];
+}
+
+// Returns the view.
+const core::View& check(const core::View& view, std::span<const float> range_m, glm::ivec2 cells,
+                        glm::ivec2 size) {
   if (view.projection != core::Projection::kPerspective)
     throw std::invalid_argument("the grid of an image needs a perspective view");
   if (cells.x < 1 || cells.y < 1) throw std::invalid_argument("the grid of an image needs cells");
-  if (range_m.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height))
+  if (range_m.size() != static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y))
     throw std::invalid_argument("the grid of an image needs its ranges");
+  return view;
+}
+
+}  // namespace
+
+template <typename RangeAt>
+ImageGrid::ImageGrid(const core::View& view, glm::ivec2 cells, const RangeAt& range_at)
+    : view_(view), cells_(cells + 2) {
+  const core::SubRectangle part = core::drawn_part(view);
   const double ring_px = kRing * std::max(part.width, part.height);
   const std::vector<double> xs = places_along(part.width, cells.x, ring_px);
   const std::vector<double> ys = places_along(part.height, cells.y, ring_px);
-  for (const double y : ys) {
-    for (const double x : xs) {
-      const int column = std::clamp(static_cast<int>(x), 0, part.width - 1);
-      const int row = std::clamp(static_cast<int>(y), 0, part.height - 1);
-      const float range = range_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width) +
-                                  static_cast<std::size_t>(column)];
-      const glm::dvec3 ray = core::pixel_ray(view, part.x + column + 0.5, part.y + row + 0.5);
+  for (int j = 0; j < static_cast<int>(ys.size()); ++j) {
+    for (int i = 0; i < static_cast<int>(xs.size()); ++i) {
+      // The ring has the ranges of the image's border.
+      const glm::ivec2 corner = glm::clamp(glm::ivec2(i, j) - 1, glm::ivec2(0), cells);
+      const glm::ivec2 pixel = corner_pixel({part.width, part.height}, cells, corner);
+      const float range = range_at(corner);
+      const glm::dvec3 ray = core::pixel_ray(view, part.x + pixel.x + 0.5, part.y + pixel.y + 0.5);
       const double cosine = glm::dot(ray, view.camera.axes.forward);
-      places_.emplace_back(x, y);
+      places_.emplace_back(xs[static_cast<std::size_t>(i)], ys[static_cast<std::size_t>(j)]);
       depth_m_.push_back(range > 0 ? static_cast<float>(static_cast<double>(range) * cosine)
                                    : std::numeric_limits<float>::infinity());
     }
   }
+}
+
+ImageGrid::ImageGrid(const core::View& view, std::span<const float> range_m, glm::ivec2 cells)
+    : ImageGrid(check(view, range_m, cells, core::drawn_size(view)), cells, [&](glm::ivec2 corner) {
+        const glm::ivec2 size = core::drawn_size(view);
+        return at(range_m, size.x, corner_pixel(size, cells, corner));
+      }) {}
+
+ImageGrid ImageGrid::of_corners(const core::View& view, std::span<const float> range_m, glm::ivec2 cells) {
+  return {check(view, range_m, cells, cells + 1), cells,
+          [&](glm::ivec2 corner) { return at(range_m, cells.x + 1, corner); }};
 }
 
 glm::vec2 ImageGrid::texture_at(std::size_t vertex) const {

@@ -35,6 +35,10 @@ class ImageGrid {
   // projections.
   ImageGrid(const core::View& view, std::span<const float> range_m, glm::ivec2 cells);
 
+  // Takes the ranges of the pixels at the corners of cells alone, row by row: corner n of a side of `length` pixels has pixel
+  // min(length * n / cells, length - 1). The grid is that of all ranges. Throws as the constructor.
+  static ImageGrid of_corners(const core::View& view, std::span<const float> range_m, glm::ivec2 cells);
+
   const core::View& view() const { return view_; }
   // Returns the number of cells with the ring, and of vertices.
   glm::ivec2 cells() const { return cells_; }
@@ -50,6 +54,9 @@ class ImageGrid {
   void move(const core::View& to, std::vector<MovedVertex>& out) const;
 
  private:
+  template <typename RangeAt>  // of a corner
+  ImageGrid(const core::View& view, glm::ivec2 cells, const RangeAt& range_at);
+
   core::View view_;
   glm::ivec2 cells_;
   std::vector<glm::vec2> places_;

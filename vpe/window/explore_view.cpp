@@ -140,6 +140,7 @@ void ExploreWindow::request_image() {
   request.draw.settings.ray_ratio *= next->side;
   if (const std::string error = recorder_.record_image(request, drawn, session_, now_s()); !error.empty())
     show_message(error, true);
+  shared_.place(request, drawn, recorder_.is_recording());
   maker_->request(std::move(request));
 }
 
@@ -190,7 +191,7 @@ bool ExploreWindow::take_image() {
     show_message(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
   follow_ground(drawn->changed);
-  view_texture_.upload(drawn->image);
+  if (!shared_.take(*drawn)) view_texture_.upload(drawn->image);
   if (!drawn->earlier.pixels.empty()) earlier_texture_.upload(drawn->earlier);
   const glm::ivec2 margin_px = drawn->request.margin_px;
   finer_.begin();  // not before: it would delay the first image
@@ -296,7 +297,7 @@ void ExploreWindow::draw_view() {
     draw_image(list, area, view_texture_, drawn_->grids);
     list.PopClipRect();
   } else {
-    draw_image(list, area, view_texture_, drawn_->grids);
+    draw_image(list, area, shared_.shown() != nullptr ? *shared_.shown() : view_texture_, drawn_->grids);
   }
   shown_view_ = lags() ? session_.view() : drawn_->request.draw.view;
   // Images of the terrain come first: few frames are shown between quick ones.
@@ -319,9 +320,14 @@ bool ExploreWindow::swipes() const {
          setup_.planet->earlier() != nullptr;
 }
 
+const core::RgbImage& ExploreWindow::image() const {
+  if (last_image_.pixels.empty() && shared_.shown() != nullptr) last_image_ = shared_.shown()->read_back();
+  return last_image_;
+}
+
 // Returns the last image as the line shows it.
 core::RgbImage ExploreWindow::swiped_image() const {
-  core::RgbImage image = last_image_;
+  core::RgbImage image = this->image();
   if (!swipes() || !drawn_ || drawn_->earlier.pixels.size() != image.pixels.size()) return image;
   const auto width = static_cast<std::size_t>(image.width);
   const auto left = static_cast<std::size_t>(std::lround(swipe_.share() * image.width));

@@ -48,6 +48,7 @@
 #include "vpe/window/reliefs/reliefs_panel.h"
 #include "vpe/window/screens/screen_windows.h"
 #include "vpe/window/session_recorder.h"
+#include "vpe/window/shared_images.h"
 #include "vpe/window/swipe_line.h"
 #include "vpe/window/ui/display.h"
 #include "vpe/window/ui/imgui_helpers.h"
@@ -198,7 +199,9 @@ class ExploreWindow {
   const Devices& devices() const { return devices_; }
   // Returns the image shown last, or null before the first, and its pixels.
   const DrawnImage* drawn() const { return drawn_ ? &*drawn_ : nullptr; }
-  const core::RgbImage& image() const { return last_image_; }
+  const core::RgbImage& image() const;
+  // Returns what keeps images of triangles in OpenGL.
+  const SharedImages& shared_images() const { return shared_; }
   // Returns the line between the earlier planet and this one.
   const SwipeLine& swipe_line() const { return swipe_; }
   // Returns the view that the last frame shows, by its image or by one that follows the camera, or null before the first.
@@ -392,7 +395,8 @@ class ExploreWindow {
   std::optional<KeptSession> session_kept_;
   std::optional<mars::LonLat> under_cursor_;  // in view or map
   std::string cursor_text_;                   // of the place that was under it last
-  Texture view_texture_;
+  SharedImages shared_;
+  Texture view_texture_;     // of images that are pixels
   Texture earlier_texture_;  // of the earlier planet, while the line is on
   SwipeLine swipe_;
   MovedImage moved_image_;
@@ -414,7 +418,7 @@ class ExploreWindow {
   std::optional<DeviceStates> shown_devices_;  // in the last frame, where it showed them
   explore::ViewHistory history_;
   SessionRecorder recorder_;
-  core::RgbImage last_image_;  // pixels of drawn_
+  mutable core::RgbImage last_image_;  // pixels of drawn_, which are read back once they are asked for
   PlanetOpener opener_;
   std::filesystem::path opening_project_;  // whose planet is being opened
   std::filesystem::path next_project_;

@@ -72,6 +72,13 @@ const core::KeyRegistry<Preferences>& preference_keys() {
        "",
        "while an image is drawn the last one follows the camera: as a grid with the distances of the ground; pixel by pixel; "
        "by one pair of polynomials; or not at all"},
+      {"draw.context",
+       Declare::choice<&P::context>({core::word("auto", DrawContextChoice::kAuto),
+                                     core::word("shared", DrawContextChoice::kShared),
+                                     core::word("own", DrawContextChoice::kOwn)}),
+       "",
+       "images of triangles stay in textures of the window where there is a GPU; always; or never. Takes effect with the next "
+       "window"},
       {"ui.scale", Declare::number<&P::ui_scale>(0, 8), "",
        "size of letters and panels; 0 = the scale of the display"},
       {"ui.longitude",

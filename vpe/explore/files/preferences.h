@@ -31,6 +31,11 @@ enum class Warp {
   kGrid,        // as a grid whose vertices have ranges of their own (warp::ImageGrid)
   kCarry,       // pixel by pixel (warp::Carrier), before the grid
 };
+enum class DrawContextChoice {
+  kAuto,    // the window's, where there is a GPU
+  kShared,  // the window's: images of triangles stay in its textures
+  kOwn,     // one without a window: all images are pixels
+};
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 
 // Choices of the user. preferences.cpp declares the key, the limits and the meaning of each.
@@ -45,6 +50,7 @@ struct Preferences {
   double draw_budget_ms = 40;
   // Says how the last image is moved to the newest pose until the next one is there.
   Warp warp = Warp::kGrid;
+  DrawContextChoice context = DrawContextChoice::kAuto;  // in which triangles are drawn
   double ui_scale = 0;                                 // size of letters and panels; 0: the display's own scale
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;

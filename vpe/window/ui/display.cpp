@@ -418,6 +418,24 @@ void Texture::upload(unsigned format, const std::uint8_t* pixels, int width, int
   format_ = format;
 }
 
+void Texture::set_stored(int width, int height) {
+  width_ = width;
+  height_ = height;
+  format_ = 0;  // an upload makes storage of its own
+}
+
+core::RgbImage Texture::read_back() const {
+  core::RgbImage image;
+  image.width = width_;
+  image.height = height_;
+  image.pixels.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  if (image.pixels.empty()) return image;
+  glBindTexture(GL_TEXTURE_2D, name_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTexImage(GL_TEXTURE_2D, 0, GL_RGB, GL_UNSIGNED_BYTE, &image.pixels.data()->r);
+  return image;
+}
+
 void* Texture::id() const { return reinterpret_cast<void*>(static_cast<std::uintptr_t>(name_)); }
 
 }  // namespace vpe::window

@@ -1,5 +1,6 @@
 // A window on the screen with Dear ImGui: GLFW, an OpenGL context for panels and finished images, fonts for its
-// pixel density. Images of terrain arrive as pixels (painter.h); this context does not draw them.
+// pixel density. Images of terrain arrive as pixels or in textures (painter.h); this
+// context does not draw them.
 #pragma once
 
 #include <cstdint>
@@ -145,9 +146,14 @@ class Texture {
   void upload(const core::RgbImage& image);
   // Takes pixels of red, green, blue and opacity, row by row from the top.
   void upload_rgba(std::span<const std::uint8_t> pixels, int width, int height);
+  // Says that another context has stored an image of this size in it (name()).
+  void set_stored(int width, int height);
+  // Returns the stored image.
+  core::RgbImage read_back() const;
   int width() const { return width_; }
   int height() const { return height_; }
-  void* id() const;  // ImTextureID
+  void* id() const;                        // ImTextureID
+  unsigned name() const { return name_; }  // OpenGL's
 
  private:
   void upload(unsigned format, const std::uint8_t* pixels, int width, int height);

@@ -21,6 +21,25 @@
 
 namespace vpe::window {
 
+// A context of OpenGL that shares textures with a display's. For one thread at a time.
+class DrawContext {
+ public:
+  virtual ~DrawContext() = default;
+  // Makes it current on this thread. Throws std::runtime_error.
+  virtual void make_current() = 0;
+  // Leaves this thread without a current context.
+  virtual void release() = 0;
+};
+
+// Says where triangles are drawn.
+struct DrawPlace {
+  // Lives longer than the painter; null: the painter makes a context of its own. The first request of a painter decides.
+  DrawContext* context = nullptr;
+  bool needs_gpu = false;  // the context is of no use where OpenGL runs on the CPU
+  unsigned texture = 0;    // OpenGL's name of one that the image is drawn into; 0: pixels are wanted
+  void* unused = nullptr;  // GLsync, which is passed once the display no longer draws the texture
+};
+
 struct ImageRequest {
   std::uint64_t number = 0;  // of the window's requests, ascending
   core::Backend backend = core::Backend::kPolygon;
@@ -46,12 +65,16 @@ struct ImageRequest {
   // Also draws the planet that this one is compared with (paging::PlanetFile::earlier()), by the same request; not with
   // stereo, and nothing without such a planet.
   bool with_earlier = false;
+  DrawPlace place;
 };
 
 // Holds the result of a request.
 struct DrawnImage {
   ImageRequest request;
   core::RgbImage image;  // with its margin; in stereo of another size than the view; empty after an error
+  // The image is in the texture of the request, and `image` has its size but no pixels.
+  bool is_in_texture = false;
+  void* drawn = nullptr;  // GLsync, which is passed once the texture is drawn; who takes the image deletes it
   // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
   // larger bound.
   core::DrawResult result;
