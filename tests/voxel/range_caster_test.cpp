@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 
 #include "tests/gl/gl_fixture.h"
@@ -196,6 +197,43 @@ TEST_F(Columns, PerspectiveImagesAreExactButForWhatIsNarrowerThanAPixel) {
   EXPECT_LE(wide.ties, wide.pixels / 100);
   EXPECT_LT(sum.at(0.99), 1e-6);
   EXPECT_LT(wide.at(0.99), 1e-6);
+}
+
+// A ray between two columns may meet a crest that only one of them meets.
+TEST_F(Columns, PerspectiveRaysSeldomMissCrestsBesideTheirSamples) {
+  RangeCaster caster(bumpy(), kBudget);
+  const paging::Surface& surface = caster.surface();
+  Random random(76);
+  std::int64_t pixels = 0;
+  std::int64_t beyond = 0;
+  std::int64_t nearer = 0;
+  for (int n = 0; n < 24; ++n) {
+    const mars::LonLat at = mars::lon_lat(random.direction());
+    const double height_m = surface.at(mars::direction(at)).height_m + (n < 8 ? 2e3 : n < 16 ? 2e4 : 1e5);
+    core::View view;
+    view.width = 240;
+    view.height = 160;
+    view.fov_deg = 40;
+    view.camera =
+        mars::to_camera({at.lon_deg, at.lat_deg, height_m, random.uniform(0, 360), -5, 45.0 * (n % 2)},
+                        surface.planet_radius_m());
+    const std::vector<float> range = cast(caster, view, {1.0});
+    for (std::size_t k = 0; k < range.size(); ++k) {
+      const auto width = static_cast<std::size_t>(view.width);
+      const glm::dvec3 ray =
+          core::pixel_ray(view, static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5);
+      const double exact = surface.cast(view.camera.position_m, ray);
+      ++pixels;
+      if (std::isinf(exact)) continue;
+      beyond += static_cast<double>(range[k]) > exact * (1 + 1e-4) ? 1 : 0;
+      nearer += static_cast<double>(range[k]) < exact * (1 - 1e-4) ? 1 : 0;
+    }
+  }
+  std::printf("of %lld pixels %lld show ground behind a crest\n", static_cast<long long>(pixels),
+              static_cast<long long>(beyond));
+  // Without the search for crests 498.
+  EXPECT_LE(beyond, pixels / 5000);
+  EXPECT_EQ(nearer, 0);
 }
 
 TEST_F(Columns, TiltedRoundImagesAreExactButForWhatIsNarrowerThanAPixel) {

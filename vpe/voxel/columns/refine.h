@@ -48,6 +48,10 @@ struct RayRow {
 // facets' posts, rounded to float, and infinite where both hints are. Pixels whose hints belong to different
 // surfaces, and pixels that find no facet, keep the nearer hint and are appended to `unresolved`.
 //
+// A ray whose hints are apart and that misses the surface of the nearer one may still meet a crest there. It is searched for ground
+// up to what it meets behind or the end of the height grid, at places half a post apart at first, at their facets; what is narrower
+// is passed over.
+//
 // `source` and `exact_source` must provide the same height grids; they are two because the kernel alternates
 // between posts in float and in double, and each source remembers its last grid. Throws what they throw.
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,

@@ -27,6 +27,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kMaxRounds = 8;  // facets that are tried in one grid
 constexpr int kMaxGrids = 12;
 
+// The search for crests. In posts: the step at first, and the share of the way so far that a later step is.
+constexpr int kCrestSamples = 64;
+constexpr double kLeastStep = 0.5;
+constexpr double kStepGrowth = 0.05;
+// Shares of a range: how far before the sample of its surface a crest may begin, and how much before the ground behind it the search
+// ends.
+constexpr double kBeforeSample = 0.002;
+constexpr double kBeforeRange = 1e-5;
+
 // Refines as many neighbouring pixels as D has lanes. D is a vector of float or, for grids below the camera, of
 // double.
 template <class D>
@@ -93,6 +102,39 @@ class RowRefiner {
 
   M other_kind() const { return other_kind_; }
 
+  // Returns where the ray of one lane first meets ground from just before near_m, the range of a sample beside it, to range_m, what
+  // it meets at the latest; range_m itself where it meets none. Looks at kCrestSamples places, half a post apart at first and farther
+  // apart later on, and at the facet below each, so it passes over narrower ground. Stays in the height grid where it begins, so that it
+  // needs no tile that is hidden; does nothing if that is of the other precision (passed_other_kind()). refine() serves again after
+  // set_rays().
+  T first_crest(std::size_t lane, T near_m, T range_m) {
+    const D d;
+    lane_ = static_cast<int>(lane);
+    if (facets_ != nullptr) set_directions();
+    const T end_m = range_m * static_cast<T>(1 - kBeforeRange);
+    T before_m = near_m * static_cast<T>(1 - kBeforeSample);
+    const T begin_m = before_m;
+    const T post_m = post_along(begin_m);
+    ends_ = passed_other_kind_ = (facets_->exact_lines != nullptr) != kExact;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    alignas(64) T offsets[64 / sizeof(T)];
+    T met_m = range_m;
+    T from_start = 0;  // posts
+    for (int n = 0; n < kCrestSamples && before_m < end_m && !ends_; n += lanes) {
+      for (int k = 0; k < lanes; ++k) {
+        offsets[k] = from_start;
+        from_start += std::max(static_cast<T>(kLeastStep), static_cast<T>(kStepGrowth) * from_start);
+      }
+      const V t = hn::MulAdd(hn::Load(d, offsets), hn::Set(d, post_m), hn::Set(d, begin_m));
+      if (look(t, begin_m + from_start * post_m, end_m, before_m, met_m)) break;
+    }
+    lane_ = -1;
+    return met_m;
+  }
+
+  // Returns whether the last first_crest() did nothing.
+  bool passed_other_kind() const { return passed_other_kind_; }
+
  private:
   struct GridPosition {
     V x, y, z;
@@ -100,14 +142,82 @@ class RowRefiner {
 
   static V set(double x) { return hn::Set(D(), static_cast<T>(x)); }
 
+  // Returns how long a post is along the ray of lane_ at a range: between two lines of the family that it crosses more often.
+  T post_along(T range_m) {
+    const D d;
+    const V t = hn::Set(d, range_m);
+    if (facets_ == nullptr || hn::AllFalse(d, inside(position_at(t)))) select_grid(hn::FirstN(d, 1), t);
+    const GridPosition p = position_at(t);
+    const V x = hn::Abs(hn::NegMulAdd(p.x, dz_, dx_));
+    const V y = hn::Abs(hn::NegMulAdd(p.y, dz_, dy_));
+    return hn::GetLane(hn::Div(p.z, hn::Max(x, y)));
+  }
+
+  // Looks at the ground below places t of the ray of lane_, which rise; `after` follows the last one. Returns true if the search ends:
+  // sets met_m where the ray meets ground before end_m. Else sets before_m to the last place.
+  bool look(V t, T after_m, T end_m, T& before_m, T& met_m) {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (int round = 0; round < kMaxRounds; ++round) {
+      alignas(64) T places[64 / sizeof(T) + 1];
+      alignas(64) T under[64 / sizeof(T)];
+      alignas(64) T crossings[64 / sizeof(T)];
+      hn::Store(t, d, places);
+      places[lanes] = after_m;
+      V crossing = t;
+      const M is_under = look_below(t, hn::LoadU(d, places + 1), crossing);
+      hn::Store(hn::IfThenElse(is_under, hn::Set(d, T(1)), hn::Zero(d)), d, under);
+      hn::Store(crossing, d, crossings);
+      std::size_t k = 0;
+      while (k < lanes && under[k] == 0 && crossings[k] == places[k]) ++k;
+      if (k == lanes) {
+        before_m = places[lanes - 1];
+        return false;
+      }
+      if (under[k] == 0) {
+        if (crossings[k] < end_m) met_m = crossings[k];
+        return true;
+      }
+      // The ray comes below the ground between two places.
+      if (k > 0) before_m = places[k - 1];
+      after_m = places[k];
+      if (!(before_m < after_m) || before_m >= end_m) return true;
+      const T step = (after_m - before_m) / static_cast<T>(lanes + 1);
+      t = hn::MulAdd(hn::Iota(d, T(0)), hn::Set(d, step), hn::Set(d, before_m));
+    }
+    met_m = std::min(after_m, met_m);
+    return true;
+  }
+
+  // Returns the lanes whose place t is below the ground. Sets `crossing` for others, above the ground, whose ray meets the facet
+  // below t before `next`.
+  M look_below(V t, V next, V& crossing) {
+    const D d;
+    const GridPosition position = position_at(t);
+    const M here = inside(position);
+    ends_ = !hn::AllTrue(d, here);
+    const FacetPlace facet = facet_at(here, position);
+    const FacetPlane plane = plane_of(facet);
+    const M below = hn::Ge(hn::MulAdd(t, plane.slope, plane.at_camera), hn::Zero(d));
+    const V at = hn::Neg(hn::Div(plane.at_camera, plane.slope));
+    const M ahead = hn::And(hn::Gt(plane.slope, hn::Zero(d)), hn::And(hn::Gt(at, t), hn::Le(at, next)));
+    const M meets = hn::And(hn::AndNot(below, here), ahead);
+    if (!hn::AllFalse(d, meets)) {
+      const GridPosition there = position_at(at);
+      const M on_facet = hn::RebindMask(d, hn::Eq(facet_at(meets, there).number, facet.number));
+      crossing = hn::IfThenElse(hn::And(hn::And(meets, inside(there)), on_facet), at, crossing);
+    }
+    return hn::And(here, below);
+  }
+
   // Selects the height grid of the first lane in `todo`.
   void select_grid(M todo, V t) {
     const D d;
     const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, todo));
     alignas(64) T ts[64 / sizeof(T)];
     hn::Store(t, d, ts);
-    const glm::dvec3 ray =
-        glm::normalize(row_.first + static_cast<double>(first_ + static_cast<int>(lane)) * row_.step);
+    const int ray_lane = lane_ >= 0 ? lane_ : static_cast<int>(lane);
+    const glm::dvec3 ray = glm::normalize(row_.first + static_cast<double>(first_ + ray_lane) * row_.step);
     facets_ = &source_.at(row_.camera_m + static_cast<double>(ts[lane]) * ray);
     const Facets& f = *facets_;
     grid_count_ = (grid_count_ + 1) & 0x1fff;
@@ -142,6 +252,12 @@ class RowRefiner {
     dy_ = along(ray0_.y, ray1_.y);
     dz_ = along(ray0_.z, ray1_.z);
     ray_rise_ = along(ray0_.w, ray1_.w);
+    if (lane_ < 0) return;
+    for (V* const v : {&dx_, &dy_, &dz_, &ray_rise_}) {
+      alignas(64) T lanes[64 / sizeof(T)];
+      hn::Store(*v, D(), lanes);
+      *v = hn::Set(D(), lanes[lane_]);
+    }
   }
 
   GridPosition position_at(V t) const {
@@ -212,42 +328,65 @@ class RowRefiner {
             posts_at(hn::Add(index, hn::IfThenElse(low, east, north)))};
   }
 
+  // Holds facets: a cell's corner, which of its two facets it is, and a number that differs between facets.
+  struct FacetPlace {
+    V i, j;
+    VI xi, yj;
+    M lower;
+    VI number;
+  };
+  FacetPlace facet_at(M here, const GridPosition& position) const {
+    const D d;
+    const DI di;
+    const V zero = hn::Zero(d);
+    FacetPlace f;
+    f.i = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.x), zero), last_), zero);
+    f.j = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.y), zero), last_), zero);
+    f.lower = hn::Ge(hn::Sub(position.x, f.i), hn::Sub(position.y, f.j));
+    f.xi = hn::ConvertTo(di, f.i);
+    f.yj = hn::ConvertTo(di, f.j);
+    const VI is_lower = hn::IfThenElse(hn::RebindMask(di, f.lower), hn::Set(di, 1), hn::Zero(di));
+    f.number =
+        hn::Add(hn::Add(hn::ShiftLeft<1>(f.xi), hn::ShiftLeft<9>(f.yj)), hn::Add(is_lower, grid_number_));
+    return f;
+  }
+
+  // Holds how far below a facet's plane a ray is: at the camera, and how much more for each metre along the ray.
+  struct FacetPlane {
+    V at_camera;
+    V slope;
+  };
+  FacetPlane plane_of(const FacetPlace& f) const {
+    const Corners c = corners(f.xi, f.yj, f.lower);
+    const V first = hn::Sub(c.between, c.first);
+    const V second = hn::Sub(c.across, c.between);
+    const V p = hn::IfThenElse(f.lower, first, second);
+    const V q = hn::IfThenElse(f.lower, second, first);
+    // By way of the reference plane.
+    const V per_r = set(1.0 / row_.radius_m);
+    const auto below = [&](V x, V y, V z, V reference) {
+      const V px = hn::NegMulAdd(f.i, z, x);
+      const V py = hn::NegMulAdd(f.j, z, y);
+      return hn::MulAdd(per_r, hn::MulAdd(c.first, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
+    };
+    return {below(camera_x_, camera_y_, camera_z_, camera_rise_), below(dx_, dy_, dz_, ray_rise_)};
+  }
+
   // Intersects the rays with the planes of the facets at `position`. Moves lanes whose facet stays the same
   // from `todo` to `found`, and drops lanes whose intersection is not usable from `todo`.
   void step(M here, const GridPosition& position, M& todo, M& found, V low, V high, V& t) {
     const D d;
     const DI di;
-    const V zero = hn::Zero(d);
-    const V i = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.x), zero), last_), zero);
-    const V j = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.y), zero), last_), zero);
-    const M lower = hn::Ge(hn::Sub(position.x, i), hn::Sub(position.y, j));
-    const VI xi = hn::ConvertTo(di, i);
-    const VI yj = hn::ConvertTo(di, j);
-    const VI lower_i = hn::IfThenElse(hn::RebindMask(di, lower), hn::Set(di, 1), hn::Zero(di));
-    const VI facet =
-        hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<9>(yj)), hn::Add(lower_i, grid_number_));
-    const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet, last_facet_)));
+    const FacetPlace facet = facet_at(here, position);
+    const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet.number, last_facet_)));
     found = hn::Or(found, same);
     todo = hn::AndNot(same, todo);
     here = hn::AndNot(same, here);
     if (hn::AllFalse(d, here)) return;
-    last_facet_ = hn::IfThenElse(hn::RebindMask(di, here), facet, last_facet_);
-    const Corners c = corners(xi, yj, lower);
-    const V first = hn::Sub(c.between, c.first);
-    const V second = hn::Sub(c.across, c.between);
-    const V p = hn::IfThenElse(lower, first, second);
-    const V q = hn::IfThenElse(lower, second, first);
-    // Metres below the facet's plane, by way of the reference plane.
-    const V per_r = set(1.0 / row_.radius_m);
-    const auto below = [&](V x, V y, V z, V reference) {
-      const V px = hn::NegMulAdd(i, z, x);
-      const V py = hn::NegMulAdd(j, z, y);
-      return hn::MulAdd(per_r, hn::MulAdd(c.first, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
-    };
-    const V at_camera = below(camera_x_, camera_y_, camera_z_, camera_rise_);
-    const V slope = below(dx_, dy_, dz_, ray_rise_);
-    const V next = hn::Neg(hn::Div(at_camera, slope));
-    const M good = hn::And(hn::Gt(slope, zero), hn::And(hn::Ge(next, low), hn::Le(next, high)));
+    last_facet_ = hn::IfThenElse(hn::RebindMask(di, here), facet.number, last_facet_);
+    const FacetPlane plane = plane_of(facet);
+    const V next = hn::Neg(hn::Div(plane.at_camera, plane.slope));
+    const M good = hn::And(hn::Gt(plane.slope, hn::Zero(d)), hn::And(hn::Ge(next, low), hn::Le(next, high)));
     t = hn::IfThenElse(hn::And(here, good), next, t);
     // The facet faces away from the camera, or the place is far from the hints.
     todo = hn::AndNot(hn::AndNot(good, here), todo);
@@ -257,6 +396,9 @@ class RowRefiner {
   FacetSource& source_;
   const Facets* facets_ = nullptr;
   int first_ = 0;
+  bool passed_other_kind_ = false;
+  bool ends_ = false;  // the search, at the border of the height grid
+  int lane_ = -1;      // the lane whose ray all lanes have; -1: each its own
   int grid_count_ = 0;
   glm::dvec4 ray0_{};
   glm::dvec4 ray1_{};

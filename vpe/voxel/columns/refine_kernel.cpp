@@ -25,6 +25,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Hints that differ by more than this share of the nearer one belong to different surfaces.
 constexpr double kApart = 0.04;
+// Between hints that differ by more than this there may be a crest, with ground behind it that is as well between them.
+constexpr double kMaybeCrest = 0.003;
 
 using FloatTag = hn::CappedTag<float, 16>;
 using DoubleTag = hn::CappedTag<double, 8>;
@@ -84,6 +86,27 @@ class PixelRefiner {
     return hn::Or(found, hn::Eq(hn::Load(d, marks), hn::Set(d, 2.0F)));
   }
 
+  // Returns the ranges of the lanes in `todo` as RowRefiner::first_crest() does, and those of the others as they are. set_rays() must
+  // follow.
+  V first_crests(M todo, V near, V range) {
+    const FloatTag d;
+    alignas(64) float marks[16];
+    alignas(64) float nears[16];
+    alignas(64) float ranges[16];
+    hn::Store(hn::IfThenElse(todo, hn::Set(d, 1.0F), hn::Zero(d)), d, marks);
+    hn::Store(near, d, nears);
+    hn::Store(range, d, ranges);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (marks[lane] == 0) continue;
+      ranges[lane] = floats_.first_crest(lane, nears[lane], ranges[lane]);
+      if (HWY_LIKELY(!floats_.passed_other_kind())) continue;
+      doubles_.set_rays(first_ + static_cast<int>(lane));
+      ranges[lane] = static_cast<float>(
+          doubles_.first_crest(0, static_cast<double>(nears[lane]), static_cast<double>(ranges[lane])));
+    }
+    return hn::Load(d, ranges);
+  }
+
  private:
   int first_ = 0;
   RowRefiner<FloatTag> floats_;
@@ -102,6 +125,7 @@ void refine_row_kernel(const RayRow& row, const float* a, const float* b, const 
   const V one = hn::Set(d, 1.0F);
   const V inf = hn::Set(d, std::numeric_limits<float>::infinity());
   const V apart = hn::Set(d, static_cast<float>(kApart));
+  const V maybe_crest = hn::Set(d, static_cast<float>(kMaybeCrest));
   alignas(64) float some[3][16];
   for (int k = 0; k < row.count; k += lanes) {
     const int used = std::min(lanes, row.count - k);
@@ -123,19 +147,25 @@ void refine_row_kernel(const RayRow& row, const float* a, const float* b, const 
     }
     refiner.set_rays(k);
     const V reach = hn::Mul(near, apart);
-    const M close = hn::Le(hn::Sub(far, near), reach);
+    const V gap = hn::Sub(far, near);
+    const M close = hn::Le(gap, reach);
+    const M smooth = hn::Le(gap, hn::Mul(near, maybe_crest));
     // On one facet the inverse range changes almost linearly from sample to sample.
     const V inverse = hn::MulAdd(part, hn::Sub(hn::Div(one, hb), hn::Div(one, ha)), hn::Div(one, ha));
+    const V between = hn::Div(one, inverse);
     // Between two surfaces the nearer one comes first.
-    V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
+    V t = hn::IfThenElse(smooth, between, near);
+    const V low = hn::Sub(near, reach);
     const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
-    M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
+    M found = refiner.refine(hn::Not(sky), low, high, t);
+    const M passed = hn::Not(hn::Or(found, hn::Or(sky, smooth)));
     // On rough ground the iteration may fail from between two samples. A sample's own facet faces the camera.
-    for (const V& start : {near, far}) {
+    const V starts[] = {hn::IfThenElse(smooth, near, between), far};
+    for (const V& start : starts) {
       const M again = hn::And(close, hn::Not(hn::Or(found, sky)));
       if (hn::AllFalse(d, again)) break;
       V other = start;
-      const M met = refiner.refine(again, hn::Sub(near, reach), high, other);
+      const M met = refiner.refine(again, low, high, other);
       t = hn::IfThenElse(met, other, t);
       found = hn::Or(found, met);
     }
@@ -152,6 +182,8 @@ void refine_row_kernel(const RayRow& row, const float* a, const float* b, const 
       seen = hn::IfThenElse(met, behind, hn::IfThenElse(open_sky, inf, seen));
       done = hn::Or(done, hn::Or(met, open_sky));
     }
+    const M crest = hn::And(passed, done);
+    if (!hn::AllFalse(d, crest)) seen = refiner.first_crests(crest, near, seen);
     if (used == lanes) {
       hn::StoreU(seen, d, range + k);
     } else {
