@@ -76,7 +76,9 @@ lod::BlockErrors TileErrors::measure(const lod::SelectedTile& tile, double exagg
   const lod::Posts posts = planet_->tree()[tile.index].has_children
                                ? children_posts(*planet_, tile.key)
                                : planet_->heights(tile.key, exaggeration).posts;
-  lod::BlockErrors errors = lod::block_errors(packed.mesh, heights, posts, {planet_->radius_m(), exaggeration});
+  lod::BlockErrorOptions options{planet_->radius_m(), exaggeration};
+  options.rows = std::min(options.rows, posts.intervals);
+  lod::BlockErrors errors = lod::block_errors(packed.mesh, heights, posts, options);
   const double posts_m = below_m(tile, exaggeration);
   for (float& bound_m : errors.bound_m) {
     const double all_m = std::min(static_cast<double>(bound_m) + posts_m, tile.geometric_error_m);
