@@ -47,9 +47,21 @@ bool TileErrors::says_more(const lod::SelectedTile& tile, double exaggeration) c
   return below_m(tile, exaggeration) < tile.geometric_error_m;
 }
 
+TileErrors::Key TileErrors::key_of(const lod::SelectedTile& tile, double exaggeration) const {
+  Key key{tile.key,
+          tile.variant,
+          exaggeration,
+          {planet_->version(tile.key)},
+          below_m(tile, exaggeration),
+          tile.geometric_error_m};
+  for (int c = 0; planet_->tree()[tile.index].has_children && c < 4; ++c)
+    key.versions[static_cast<std::size_t>(c) + 1] = planet_->version(lod::child(tile.key, c));
+  return key;
+}
+
 TileErrors::Pointer TileErrors::find(const lod::SelectedTile& tile, double exaggeration) {
   if (!says_more(tile, exaggeration)) return nullptr;
-  const Pointer found = kept_.get({tile.key, tile.variant, exaggeration}, [&] {
+  const Pointer found = kept_->get(key_of(tile, exaggeration), [&] {
     auto errors = std::make_shared<lod::BlockErrors>();
     try {
       *errors = measure(tile, exaggeration);
@@ -64,7 +76,7 @@ TileErrors::Pointer TileErrors::find(const lod::SelectedTile& tile, double exagg
 std::optional<TileErrors::Pointer> TileErrors::find_measured(const lod::SelectedTile& tile,
                                                              double exaggeration) {
   if (!says_more(tile, exaggeration)) return Pointer();
-  const Pointer found = kept_.find({tile.key, tile.variant, exaggeration});
+  const Pointer found = kept_->find(key_of(tile, exaggeration));
   if (found == nullptr) return std::nullopt;
   return found->bound_m.empty() ? nullptr : found;
 }

@@ -1,8 +1,11 @@
 // Errors of drawn tiles by block of their ground.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "lod/mesh/block_errors.h"
 #include "lod/select.h"
@@ -19,7 +22,11 @@ namespace paging {
 // Thread rule: any thread may call find().
 class TileErrors {
  public:
-  explicit TileErrors(std::shared_ptr<const PlanetFile> planet) : planet_(std::move(planet)) {}
+  explicit TileErrors(std::shared_ptr<const PlanetFile> planet)
+      : planet_(std::move(planet)), kept_(std::make_shared<Cache>(kBytes)) {}
+  // Shares what is kept with those of another version of the planet: tiles that are equal in both are measured once.
+  TileErrors(std::shared_ptr<const PlanetFile> planet, const TileErrors& former)
+      : planet_(std::move(planet)), kept_(former.kept_) {}
 
   using Pointer = std::shared_ptr<const lod::BlockErrors>;
 
@@ -34,6 +41,9 @@ class TileErrors {
     lod::TileKey tile;
     int variant = 0;
     double exaggeration = 1;
+    std::array<std::uint64_t, 5> versions{};  // of the tile and its children
+    double below_m = 0;
+    double most_m = 0;  // the tile's own bound
     bool operator==(const Key&) const = default;
   };
   struct KeyHash {
@@ -41,13 +51,15 @@ class TileErrors {
       return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.variant);
     }
   };
+  using Cache = vpe::base::LruCache<Key, lod::BlockErrors, KeyHash>;
+  Key key_of(const lod::SelectedTile& tile, double exaggeration) const;
   bool says_more(const lod::SelectedTile& tile, double exaggeration) const;
   double below_m(const lod::SelectedTile& tile, double exaggeration) const;
   lod::BlockErrors measure(const lod::SelectedTile& tile, double exaggeration) const;
 
   static constexpr std::size_t kBytes = std::size_t{4} << 20;  // some 800 tiles
   std::shared_ptr<const PlanetFile> planet_;
-  vpe::base::LruCache<Key, lod::BlockErrors, KeyHash> kept_{kBytes};  // without blocks: could not be read
+  std::shared_ptr<Cache> kept_;  // without blocks: could not be read
 };
 
 }  // namespace paging

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "paging/surface/query.h"
-#include "tests/paging/planet_fixture.h"
+#include "tests/paging/surface_fixture.h"
 
 namespace vpe::map {
 namespace {
@@ -31,25 +31,7 @@ double bumps_with_a_gap(const glm::dvec3& d) {
   return off < 0.03 ? std::nan("") : test_support::bumpy_height(d);
 }
 
-class GroundGridTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    dir_ = std::make_unique<test_support::TempDir>();
-    planet_ = test_support::build_fake(
-        *dir_ / "p.vpe",
-        test_support::FakeElevation(bumps_with_a_gap, test_support::fine_around({1, 0, 0}, 0.1, 8000)), 60000);
-    surface_ = std::make_unique<paging::Surface>(planet_, 64 << 20);
-  }
-  static void TearDownTestSuite() {
-    surface_.reset();
-    planet_.reset();
-    dir_.reset();
-  }
-
-  static inline std::unique_ptr<test_support::TempDir> dir_;
-  static inline std::shared_ptr<const paging::PlanetFile> planet_;
-  static inline std::unique_ptr<paging::Surface> surface_;
-};
+class GroundGridTest : public test_support::SurfaceTest<bumps_with_a_gap> {};
 
 TEST_F(GroundGridTest, HasTheValuesOfQuery) {
   const GridFrame frame = frame_around(directions_to({{2, -6}, {14, 9}}), 12000, 20000, kGridSphere_m);

@@ -10,7 +10,7 @@
 
 #include "mars/geodesy/sun.h"
 #include "paging/surface/query.h"
-#include "tests/paging/planet_fixture.h"
+#include "tests/paging/surface_fixture.h"
 
 namespace {
 
@@ -30,25 +30,7 @@ double bumps_with_a_hole(const glm::dvec3& d) {
                                                                         : test_support::bumpy_height(d);
 }
 
-class MapSamplerTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    dir_ = std::make_unique<test_support::TempDir>();
-    planet_ = test_support::build_fake(
-        *dir_ / "p.vpe", FakeElevation(bumps_with_a_hole, test_support::fine_around({1, 0, 0}, 0.1, 8000)),
-        60000);
-    surface_ = std::make_unique<paging::Surface>(planet_, 64 << 20);
-  }
-  static void TearDownTestSuite() {
-    surface_.reset();
-    planet_.reset();
-    dir_.reset();
-  }
-
-  static inline std::unique_ptr<test_support::TempDir> dir_;
-  static inline std::shared_ptr<const paging::PlanetFile> planet_;
-  static inline std::unique_ptr<paging::Surface> surface_;
-};
+class MapSamplerTest : public test_support::SurfaceTest<bumps_with_a_hole> {};
 
 const std::vector<MapBand> kGroundBands{MapBand::elevation, MapBand::slope,         MapBand::aspect,
                                         MapBand::source,    MapBand::post_spacing,  MapBand::synthetic,

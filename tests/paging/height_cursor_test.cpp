@@ -7,31 +7,11 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "tests/paging/planet_fixture.h"
+#include "tests/paging/surface_fixture.h"
 
 namespace {
 
-class HeightCursorTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    dir_ = std::make_unique<test_support::TempDir>();
-    planet_ =
-        test_support::build_fake(*dir_ / "h.vpe",
-                                 test_support::FakeElevation(test_support::bumpy_height,
-                                                             test_support::fine_around({1, 0, 0}, 0.1, 8000)),
-                                 60000);
-    surface_ = std::make_unique<paging::Surface>(planet_, 64 << 20);
-  }
-  static void TearDownTestSuite() {
-    surface_.reset();
-    planet_.reset();
-    dir_.reset();
-  }
-
-  static inline std::unique_ptr<test_support::TempDir> dir_;
-  static inline std::shared_ptr<const paging::PlanetFile> planet_;
-  static inline std::unique_ptr<paging::Surface> surface_;
-};
+class HeightCursorTest : public test_support::SurfaceTest<test_support::bumpy_height> {};
 
 glm::dvec3 any_direction(test_support::Random& random) {
   glm::dvec3 d{0, 0, 0};

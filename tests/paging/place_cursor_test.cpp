@@ -8,31 +8,11 @@
 
 #include "mars/geodesy/sphere.h"
 #include "paging/surface/query.h"
-#include "tests/paging/planet_fixture.h"
+#include "tests/paging/surface_fixture.h"
 
 namespace {
 
-class PlaceCursorTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    dir_ = std::make_unique<test_support::TempDir>();
-    planet_ =
-        test_support::build_fake(*dir_ / "c.vpe",
-                                 test_support::FakeElevation(test_support::bumpy_height,
-                                                             test_support::fine_around({1, 0, 0}, 0.1, 8000)),
-                                 60000);
-    surface_ = std::make_unique<paging::Surface>(planet_, 32 << 20);
-  }
-  static void TearDownTestSuite() {
-    surface_.reset();
-    planet_.reset();
-    dir_.reset();
-  }
-
-  static inline std::unique_ptr<test_support::TempDir> dir_;
-  static inline std::shared_ptr<const paging::PlanetFile> planet_;
-  static inline std::unique_ptr<paging::Surface> surface_;
-};
+class PlaceCursorTest : public test_support::SurfaceTest<test_support::bumpy_height> {};
 
 // Steps of all sizes, so that places are on the same facet, in the same tile, and elsewhere.
 glm::dvec3 step(test_support::Random& random, const glm::dvec3& from) {

@@ -473,7 +473,7 @@ void PolygonRenderer::go_over_to(std::shared_ptr<const paging::PlanetFile> plane
   draws_.clear();
   scene_.change_planet(planet);
   surface_.change_planet(planet);
-  errors_ = std::make_shared<paging::TileErrors>(planet);
+  errors_ = std::make_shared<paging::TileErrors>(planet, *errors_);
   planet_ = std::move(planet);
 }
 
