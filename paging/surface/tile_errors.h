@@ -23,10 +23,13 @@ namespace paging {
 class TileErrors {
  public:
   explicit TileErrors(std::shared_ptr<const PlanetFile> planet)
-      : planet_(std::move(planet)), kept_(std::make_shared<Cache>(kBytes)) {}
+      : planet_(std::move(planet)),
+        posts_(std::make_shared<PostsCache>(kPostsBytes)),
+        of_meshes_(std::make_shared<Cache>(kBytes)),
+        kept_(std::make_shared<Cache>(kBytes)) {}
   // Shares what is kept with those of another version of the planet: tiles that are equal in both are measured once.
   TileErrors(std::shared_ptr<const PlanetFile> planet, const TileErrors& former)
-      : planet_(std::move(planet)), kept_(former.kept_) {}
+      : planet_(std::move(planet)), posts_(former.posts_), of_meshes_(former.of_meshes_), kept_(former.kept_) {}
 
   using Pointer = std::shared_ptr<const lod::BlockErrors>;
 
@@ -42,8 +45,8 @@ class TileErrors {
     int variant = 0;
     double exaggeration = 1;
     std::array<std::uint64_t, 5> versions{};  // of the tile and its children
-    double below_m = 0;
-    double most_m = 0;  // the tile's own bound
+    double below_m = 0;                       // of kept_
+    double most_m = 0;                        // likewise: the tile's own bound
     bool operator==(const Key&) const = default;
   };
   struct KeyHash {
@@ -52,14 +55,22 @@ class TileErrors {
     }
   };
   using Cache = vpe::base::LruCache<Key, lod::BlockErrors, KeyHash>;
+  using PostsCache = vpe::base::LruCache<TileVersion, lod::Posts, TileVersionHash>;
   Key key_of(const lod::SelectedTile& tile, double exaggeration) const;
   bool says_more(const lod::SelectedTile& tile, double exaggeration) const;
   double below_m(const lod::SelectedTile& tile, double exaggeration) const;
+  std::shared_ptr<const lod::Posts> posts_of(const lod::TileKey& key) const;
+  lod::Posts children_posts(const lod::TileKey& key) const;
   lod::BlockErrors measure(const lod::SelectedTile& tile, double exaggeration) const;
+  Pointer find_mesh(const lod::SelectedTile& tile, double exaggeration);
 
+  static constexpr std::size_t kPostsBytes = std::size_t{4} << 20;
   static constexpr std::size_t kBytes = std::size_t{4} << 20;  // some 800 tiles
   std::shared_ptr<const PlanetFile> planet_;
-  std::shared_ptr<Cache> kept_;  // without blocks: could not be read
+  std::shared_ptr<PostsCache> posts_;  // of children, for a patch of one of four
+  // Against the posts, without what is below them; without blocks where tiles could not be read.
+  std::shared_ptr<Cache> of_meshes_;
+  std::shared_ptr<Cache> kept_;
 };
 
 }  // namespace paging
