@@ -32,7 +32,7 @@ class OverlayCut {
   bool leaves_out(const CoarseMesh::Segment& s, const CoarseMesh::Box& box, const LargestDistances& most) const;
 
  private:
-  // What bounds the distances over a piece, from its corners.
+  // Holds what bounds the distances over a piece, from its corners.
   struct Extent {
     double least_depth;
     double least_length;

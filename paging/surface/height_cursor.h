@@ -32,7 +32,7 @@ class HeightCursor {
 
   const Surface& surface_;
   std::shared_ptr<const SurfaceTile> tile_;
-  // Of tile_ and of its parent: the tile serves all bounds between.
+  // Hold the errors of tile_ and of its parent: the tile serves all bounds between.
   double geometric_error_m_ = 0;
   double parent_error_m_ = 0;
   std::optional<lod::Facet> facet_;  // of tile_

@@ -1,4 +1,4 @@
-// Where an image shows the pixels of a view, row by row.
+// Computes where an image shows the pixels of a view, row by row.
 #pragma once
 
 #include <glm/vec2.hpp>
