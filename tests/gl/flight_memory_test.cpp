@@ -36,8 +36,9 @@ struct Flight {
   int width = 0;
   int height = 0;
   int wait_every = 0;  // one frame in this many waits for its tiles; 0 = none
+  int passes = 1;      // how often the whole way is flown
 
-  int frames() const { return static_cast<int>(std::lround(duration_s * fps)); }
+  int frames() const { return static_cast<int>(std::lround(duration_s * fps)); }  // of one pass
   mars::LonLat place(double t, double radius_m) const {
     return mars::destination(from, bearing_deg, speed_m_s * t / radius_m);
   }
@@ -97,6 +98,19 @@ LineFit fit_line(const std::vector<glm::dvec2>& points) {
   return {slope, spread / std::sqrt(xx), spread};
 }
 
+// Returns by how much memory grows from the first pass to the last at equal places, on average over the samples from
+// `from_s` on. Between equal views it is free of what the driver takes for the triangles of a view.
+double growth_mb(const std::vector<std::vector<glm::dvec2>>& passes, double from_s) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t k = 0; k < passes.front().size(); ++k) {
+    if (passes.front()[k].x < from_s) continue;
+    sum += passes.back()[k].y - passes.front()[k].y;
+    ++count;
+  }
+  return sum / count;
+}
+
 class FlightMemory : public test_support::GlTest {
  protected:
   // Returns the memory of the process with this context after one frame of a tiny planet, in the mode and size
@@ -120,8 +134,9 @@ class FlightMemory : public test_support::GlTest {
     return out;
   }
 
-  // Flies, and expects the process to stay within base + 1.15 x memory_mb, and flat from flat_from_s on: a line
-  // through the samples rises or falls by less than 5 % of the memory.
+  // Flies, and expects the process to stay within base + 1.15 x memory_mb, and flat from flat_from_s on. On one pass a
+  // line through the samples rises or falls by less than 5 % of the memory; on several, the last has as much memory
+  // as the first at equal places to 5 % on average.
   void fly(const Flight& flight, const std::string& file, double base, int memory_mb, double flat_from_s) {
     const auto planet = paging::PlanetFile::open(file);
     const double radius = planet->radius_m();
@@ -138,7 +153,9 @@ class FlightMemory : public test_support::GlTest {
     double highest_mb = 0, held_mb = 0;
     std::int64_t uploaded = 0, evicted = 0, wanted = 0, missing = 0;
     std::vector<glm::dvec2> samples, uncounted;
-    for (int n = 0; n < flight.frames(); ++n) {
+    std::vector<std::vector<glm::dvec2>> passes(static_cast<std::size_t>(flight.passes));
+    for (int drawn = 0; drawn < flight.frames() * flight.passes; ++drawn) {
+      const int n = drawn % flight.frames();
       const double t = n / flight.fps;
       const auto view = [&](double ahead) {
         return view_at(flight, altitude_m, std::min(t + ahead, last), radius);
@@ -155,6 +172,7 @@ class FlightMemory : public test_support::GlTest {
       if (n % per_sample != per_sample - 1) continue;
       const double now_mb = resident_mb();
       highest_mb = std::max(highest_mb, now_mb - base);
+      passes[static_cast<std::size_t>(drawn / flight.frames())].emplace_back(t, now_mb - base);
       if (t >= flat_from_s) {
         samples.emplace_back(t, now_mb - base);
         uncounted.emplace_back(t, now_mb - base - static_cast<double>(result.stats.bytes_resident) / kMegabyte);
@@ -175,12 +193,17 @@ class FlightMemory : public test_support::GlTest {
                 static_cast<long long>(uploaded), static_cast<long long>(evicted),
                 100.0 * static_cast<double>(missing) / static_cast<double>(wanted),
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                flight.frames());
+                flight.frames() * flight.passes);
+    if (flight.passes > 1) {
+      std::printf("%d passes: %+.1f MB from the first to the last at equal places\n", flight.passes,
+                  growth_mb(passes, flat_from_s));
+    }
     EXPECT_GT(evicted, 0);  // else the flight does not test the bound
     EXPECT_LE(held_mb, memory_mb);
     if (test_support::kIsSanitized) return;
     EXPECT_LE(highest_mb, 1.15 * memory_mb);
-    EXPECT_LE(std::abs(line.slope * fitted_s), 0.05 * memory_mb);
+    const double change_mb = flight.passes > 1 ? growth_mb(passes, flat_from_s) : line.slope * fitted_s;
+    EXPECT_LE(std::abs(change_mb), 0.05 * memory_mb);
   }
 };
 
@@ -194,12 +217,13 @@ TEST_F(FlightMemory, StaysWithinTheBudgetAndFlat) {
   fly(flight, dir_ / "p.vpe", base, 64, 20);
 }
 
-// Needs the largest planet file at hand.
+// Needs the largest planet file at hand. Its way leads from plains of a thousand triangles a view over a canyon of 170 000, for
+// which the driver needs up to 20 MB more.
 using LongFlight = FlightMemory;
-TEST_F(LongFlight, TenMinutesAtTenKilometresASecond) {
+TEST_F(LongFlight, TenMinutesTwiceAtTenKilometresASecond) {
   const char* file = std::getenv("VPE_LARGE_PLANET");
   if (file == nullptr || *file == '\0') GTEST_SKIP() << "skipped: $VPE_LARGE_PLANET names no planet file";
-  const Flight flight{{-130, 5}, 100, 10000, 600, 10, 3000, 640, 360, 0};
+  const Flight flight{{-130, 5}, 100, 10000, 600, 10, 3000, 640, 360, 0, 2};
   fly(flight, file, base_mb(flight), 256, 120);
 }
 
