@@ -50,7 +50,7 @@ class PostQueue {
   }
 
  private:
-  static constexpr std::size_t kNone = ~std::size_t{0};
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   static bool before(const QueuedPost& a, const QueuedPost& b) {
     return a.geometric_error_m > b.geometric_error_m ||
@@ -59,7 +59,7 @@ class PostQueue {
 
   void put(std::size_t at, const QueuedPost& entry) {
     heap_[at] = entry;
-    place_[static_cast<std::size_t>(entry.face)] = at;
+    place_[static_cast<std::size_t>(entry.face)] = static_cast<std::uint32_t>(at);
   }
 
   // Writes the entry into the free slot `at` and restores the heap.
@@ -78,7 +78,7 @@ class PostQueue {
   }
 
   std::vector<QueuedPost> heap_;
-  std::vector<std::size_t> place_;
+  std::vector<std::uint32_t> place_;
 };
 
 }  // namespace lod

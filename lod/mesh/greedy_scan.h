@@ -38,7 +38,7 @@ class PostField {
 
  private:
   // Triangles of at most so many columns are scanned by the columns of a box, wider ones by rows between their sides.
-  static constexpr std::uint32_t kNarrow = 8;
+  static constexpr std::uint32_t kNarrow = 12;
   // Coordinates below this have exact products of differences in double, and exact sums of such products.
   static constexpr std::int64_t kMostExact = std::int64_t{1} << 25;
 

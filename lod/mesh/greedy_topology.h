@@ -32,6 +32,7 @@ class OpenMeshTopology {
   int next(int h) const { return mesh_.next_halfedge_handle(halfedge(h)).idx(); }
   int to(int h) const { return mesh_.to_vertex_handle(halfedge(h)).idx(); }
   int from(int h) const { return to(h ^ 1); }
+  int edge(int h) const { return h >> 1; }
   int face(int h) const { return mesh_.face_handle(halfedge(h)).idx(); }
   // Returns the same edge seen from the other triangle, or -1 at the border.
   int across(int h) const { return mesh_.is_boundary(halfedge(h ^ 1)) ? -1 : h ^ 1; }

@@ -32,7 +32,7 @@ TileMesh canonical_mesh(int intervals, const std::vector<std::uint32_t>& posts,
     index[post] = static_cast<std::uint16_t>(mesh.vertices.size());
     mesh.vertices.push_back({static_cast<std::uint16_t>(post % side), static_cast<std::uint16_t>(post / side)});
   }
-  // Counting sort by the first vertex, then a sort of the few triangles of each vertex.
+  // Counting sort by the first vertex, then an insertion sort of the few triangles of each vertex.
   std::vector<std::uint64_t> rotated;
   rotated.reserve(triangles.size());
   std::vector<std::uint32_t> end(mesh.vertices.size() + 1);
@@ -48,8 +48,12 @@ TileMesh canonical_mesh(int intervals, const std::vector<std::uint32_t>& posts,
   for (const std::uint64_t t : rotated) packed[end[t >> 32]++] = t;
   for (std::size_t begin = 0; begin < packed.size();) {
     const std::size_t stop = end[packed[begin] >> 32];
-    std::sort(packed.begin() + static_cast<std::ptrdiff_t>(begin),
-              packed.begin() + static_cast<std::ptrdiff_t>(stop));
+    for (std::size_t k = begin + 1; k < stop; ++k) {
+      const std::uint64_t t = packed[k];
+      std::size_t at = k;
+      for (; at > begin && packed[at - 1] > t; --at) packed[at] = packed[at - 1];
+      packed[at] = t;
+    }
     begin = stop;
   }
   mesh.triangles.reserve(3 * packed.size());

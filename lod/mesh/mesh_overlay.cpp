@@ -11,24 +11,24 @@ namespace {
 
 double length_at(double u, double v) { return std::sqrt(u * u + v * v + 1.0); }
 
-CoarseMesh::Triangle triangle_of(CoarseMesh::Vertex a, CoarseMesh::Vertex b, CoarseMesh::Vertex c) {
-  const auto above = [](const CoarseMesh::Vertex& p, const CoarseMesh::Vertex& q) {
-    return p.v > q.v || (p.v == q.v && p.u > q.u);
-  };
-  if (above(a, b)) std::swap(a, b);
-  if (above(b, c)) std::swap(b, c);
-  if (above(a, b)) std::swap(a, b);
+// Corners ascend.
+CoarseMesh::Triangle triangle_of(const CoarseMesh::Vertex& a, const CoarseMesh::Vertex& b,
+                                 const CoarseMesh::Vertex& c) {
   const double bu = b.u - a.u;
   const double bv = b.v - a.v;
   const double cu = c.u - a.u;
   const double cv = c.v - a.v;
   const double turn = bu * cv - bv * cu;  // > 0: the middle corner lies right of the long edge
-  const auto slopes = [&](double fb, double fc) {
-    return std::pair((fb * cv - fc * bv) / turn, (fc * bu - fb * cu) / turn);
-  };
-  const auto [depth_du, depth_dv] = slopes(b.depth - a.depth, c.depth - a.depth);
-  const auto [length_du, length_dv] = slopes(b.length - a.length, c.length - a.length);
-  return {{a, b, c}, turn < 0.0, depth_du, depth_dv, length_du, length_dv};
+  const double depth_b = b.depth - a.depth;
+  const double depth_c = c.depth - a.depth;
+  const double length_b = b.length - a.length;
+  const double length_c = c.length - a.length;
+  return {{a, b, c},
+          turn < 0.0,
+          (depth_b * cv - depth_c * bv) / turn,
+          (depth_c * bu - depth_b * cu) / turn,
+          (length_b * cv - length_c * bv) / turn,
+          (length_c * bu - length_b * cu) / turn};
 }
 
 }  // namespace
@@ -106,33 +106,31 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
     const double n = length_at(u, v);
     all[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
   }
-  const auto vertex = [&all](std::size_t k) -> const Vertex& { return all[k]; };
-  const auto box = [&](std::initializer_list<std::uint16_t> corners) {
-    Box b{0xffff, 0, 0xffff, 0};
-    for (const std::uint16_t k : corners) {
-      const MeshVertex& at = mesh.vertices[k];
-      b = {std::min(b.i0, at.i), std::max(b.i1, at.i), std::min(b.j0, at.j), std::max(b.j1, at.j)};
-    }
-    return b;
-  };
   triangles.reserve(mesh.triangle_count());
   triangle_boxes.reserve(mesh.triangle_count());
   segments.reserve(mesh.triangle_count() * 3 / 2);
   segment_boxes.reserve(mesh.triangle_count() * 3 / 2);
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    const std::uint16_t corner[] = {mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
-    triangles.push_back(triangle_of(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])));
-    triangle_boxes.push_back(box({corner[0], corner[1], corner[2]}));
-    for (int k = 0; k < 3; ++k) {
-      const std::uint16_t a = corner[k];
-      const std::uint16_t b = corner[(k + 1) % 3];
-      const Box ab = box({a, b});
-      const bool slanting = ab.i0 != ab.i1 && ab.j0 != ab.j1;
+    // Vertices ascend, and triangles begin with their lowest one, counter-clockwise.
+    const std::uint16_t* corner = mesh.triangles.data() + t;
+    const auto [middle, last] = std::minmax(corner[1], corner[2]);
+    triangles.push_back(triangle_of(all[corner[0]], all[middle], all[last]));
+    const MeshVertex& p = mesh.vertices[corner[0]];
+    const MeshVertex& q = mesh.vertices[middle];
+    const MeshVertex& r = mesh.vertices[last];
+    triangle_boxes.push_back({std::min(std::min(p.i, q.i), r.i), std::max(std::max(p.i, q.i), r.i), p.j, r.j});
+    for (const auto& [a, b] :
+         {std::pair(corner[0], corner[1]), std::pair(corner[1], corner[2]), std::pair(corner[2], corner[0])}) {
+      const MeshVertex& from = mesh.vertices[a];
+      const MeshVertex& to = mesh.vertices[b];
+      const bool slanting = from.i != to.i && from.j != to.j;
       // Triangles are counter-clockwise, so an inner edge occurs once in each direction.
-      if (slanting ? a < b : ab.i0 == intervals || ab.j0 == intervals) {
-        segments.push_back({vertex(a), vertex(b)});
-        segment_boxes.push_back(ab);
-      }
+      if (slanting ? a >= b
+                   : (from.i != intervals || to.i != intervals) && (from.j != intervals || to.j != intervals))
+        continue;
+      segments.push_back({all[a], all[b]});
+      segment_boxes.push_back(
+          {std::min(from.i, to.i), std::max(from.i, to.i), std::min(from.j, to.j), std::max(from.j, to.j)});
     }
   }
 }

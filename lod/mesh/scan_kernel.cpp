@@ -60,13 +60,13 @@ WorstPost box_kernel(const ScannedPosts& posts, const ScannedPlane& plane,
       const DoubleVec w_row = hn::Set(d, plane.w + plane.dy * (y_j - plane.y));
       const DoubleVec difference = hn::Sub(hn::LoadU(d, posts.w + post), hn::Add(w_row, w_x));
       const DoubleVec error = hn::Abs(hn::Mul(difference, hn::LoadU(d, posts.weight + post)));
-      const DoubleVec least =
-          hn::Min(hn::Min(hn::Add(at_0, hn::Mul(step_0, y)), hn::Add(at_1, hn::Mul(step_1, y))),
-                  hn::Add(at_2, hn::Mul(step_2, y)));
+      // Values of sides are exact, with a rounding between product and sum and without.
+      const DoubleVec least = hn::Min(hn::Min(hn::MulAdd(step_0, y, at_0), hn::MulAdd(step_1, y, at_1)),
+                                      hn::MulAdd(step_2, y, at_2));
+      const DoubleVec inside = hn::IfThenElseZero(hn::Gt(least, zero), error);
       // In each column the first of equals stays.
-      const auto is_worse = hn::And(hn::Gt(least, zero), hn::Gt(error, most));
-      most = hn::IfThenElse(is_worse, error, most);
-      most_at = hn::IfThenElse(is_worse, here, most_at);
+      most_at = hn::IfThenElse(hn::Gt(inside, most), here, most_at);
+      most = hn::Max(most, inside);
     }
     take_worse(most, most_at, worst);
   }

@@ -151,41 +151,4 @@ void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, d
   }
 }
 
-double steepest_slope(const Posts& posts, const GridLines& lines, double radius_m) {
-  const auto side = static_cast<std::size_t>(posts.intervals) + 1;
-  std::vector<glm::dvec3> low(side);
-  std::vector<glm::dvec3> high(side);
-  const auto fill = [&](std::size_t j, std::vector<glm::dvec3>& row) {
-    for (std::size_t i = 0; i < side; ++i) {
-      row[i] = mars::chart_direction(posts.key.face, lines.u[i], lines.v[j]) *
-               (radius_m + posts.height_m[j * side + i]);
-    }
-  };
-  double largest2 = 0;  // squared tangent at the corner that both facets of a cell share
-  double longest2 = 0;
-  const auto facet = [&](const glm::dvec3& shared, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 normal = glm::cross(b - shared, c - shared);
-    const double up = glm::dot(normal, shared);
-    const double tangent2 = glm::dot(normal, normal) * glm::dot(shared, shared) / (up * up) - 1.0;
-    largest2 = std::max(largest2, tangent2);
-  };
-  fill(0, low);
-  for (std::size_t j = 0; j + 1 < side; ++j) {
-    fill(j + 1, high);
-    for (std::size_t i = 0; i + 1 < side; ++i) {
-      facet(low[i], low[i + 1], high[i + 1]);
-      facet(low[i], high[i + 1], high[i]);
-      const glm::dvec3 diagonal = high[i + 1] - low[i];
-      const glm::dvec3 other = high[i] - low[i + 1];
-      longest2 = std::max({longest2, glm::dot(diagonal, diagonal), glm::dot(other, other)});
-    }
-    std::swap(low, high);
-  }
-  // Over a facet the vertical changes by at most the angle of its longest side.
-  const double turn =
-      std::sqrt(longest2) / (radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end()));
-  const double tangent = std::sqrt(largest2);
-  return turn * tangent < 0.9 ? (tangent + 1.1 * turn) / (1.0 - turn * tangent) : 1e6;
-}
-
 }  // namespace lod

@@ -327,4 +327,44 @@ TEST(SteepestSlope, BoundsTheSlopesOfTheFacets) {
   }
 }
 
+// One facet after the other, in plain code.
+TEST(SteepestSlope, IsTheSameToTheBitOnAnyInstructionSet) {
+  test_support::Random random(24);
+  for (const int intervals : {1, 2, 16, 128, 256}) {
+    const TileKey key{mars::Face::kPlusZ, 4, 5, 11};
+    Posts posts{key, intervals, {}};
+    const int side = intervals + 1;
+    for (int n = 0; n < side * side; ++n) posts.height_m.push_back(random.uniform(-3000, 5000));
+    const lod::GridLines lines = lod::grid_lines(key, intervals);
+    const auto post = [&](int i, int j) {
+      return mars::chart_direction(key.face, lines.u[static_cast<std::size_t>(i)],
+                                   lines.v[static_cast<std::size_t>(j)]) *
+             (mars::kMarsRadius_m + posts.at(i, j));
+    };
+    double tangent2 = 0;
+    double longest2 = 0;
+    const auto facet = [&](const glm::dvec3& shared, const glm::dvec3& b, const glm::dvec3& c) {
+      const glm::dvec3 normal = glm::cross(b - shared, c - shared);
+      const double up = glm::dot(normal, shared);
+      tangent2 = std::max(tangent2, glm::dot(normal, normal) * glm::dot(shared, shared) / (up * up) - 1.0);
+    };
+    for (int j = 0; j < intervals; ++j) {
+      for (int i = 0; i < intervals; ++i) {
+        facet(post(i, j), post(i + 1, j), post(i + 1, j + 1));
+        facet(post(i, j), post(i + 1, j + 1), post(i, j + 1));
+        const glm::dvec3 diagonal = post(i + 1, j + 1) - post(i, j);
+        const glm::dvec3 other = post(i, j + 1) - post(i + 1, j);
+        longest2 = std::max({longest2, glm::dot(diagonal, diagonal), glm::dot(other, other)});
+      }
+    }
+    const double lowest_m = *std::min_element(posts.height_m.begin(), posts.height_m.end());
+    const double turn = std::sqrt(longest2) / (mars::kMarsRadius_m + lowest_m);
+    const double tangent = std::sqrt(tangent2);
+    ASSERT_LT(turn * tangent, 0.9);
+    EXPECT_EQ(lod::steepest_slope(posts, lines, mars::kMarsRadius_m),
+              (tangent + 1.1 * turn) / (1.0 - turn * tangent))
+        << intervals;
+  }
+}
+
 }  // namespace
