@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "mars/geodesy/angles.h"
 #include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal/gdal_scope.h"
 #include "mars/raster/gdal_crs.h"
@@ -20,13 +21,6 @@ namespace mars {
 namespace {
 
 constexpr double kNotOnPlanet = std::numeric_limits<double>::quiet_NaN();
-
-// Returns longitude and latitude of the kind that the CRS uses, in degrees.
-glm::dvec2 crs_lon_lat(const glm::dvec3& d, double centric_scale) {
-  const double horizontal = std::sqrt(d.x * d.x + d.y * d.y);
-  return {std::atan2(d.y, d.x) / kRadiansPerDegree,
-          std::atan2(d.z, horizontal * centric_scale) / kRadiansPerDegree};
-}
 
 glm::dvec3 crs_direction(glm::dvec2 p, double centric_scale) {
   // Rounding may carry the edge of a map over the pole.
@@ -177,8 +171,9 @@ void Georeference::to_pixels(std::span<const glm::dvec3> directions, std::span<g
     return;
   }
   const Linear m = *linear_;
+  lon_lat_deg(directions, centric_scale_, pixels);  // of the kind that the CRS uses
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    glm::dvec2 p = crs_lon_lat(directions[i], centric_scale_);
+    glm::dvec2 p = pixels[i];
     if (middle_lon_deg_) p.x = *middle_lon_deg_ + std::remainder(p.x - *middle_lon_deg_, 360.0);
     pixels[i] = m.origin + m.per_lon * p.x + m.per_lat * p.y;
   }
@@ -187,7 +182,7 @@ void Georeference::to_pixels(std::span<const glm::dvec3> directions, std::span<g
 void Georeference::to_pixels_by_proj(std::span<const glm::dvec3> directions,
                                      std::span<glm::dvec2> pixels) const {
   std::vector<glm::dvec2> points(directions.size());
-  for (std::size_t i = 0; i < directions.size(); ++i) points[i] = crs_lon_lat(directions[i], centric_scale_);
+  lon_lat_deg(directions, centric_scale_, points);
   transformer_->forward(points);
   std::copy(points.begin(), points.end(), pixels.begin());
 }

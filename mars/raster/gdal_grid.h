@@ -72,8 +72,10 @@ inline bool locate(const PixelGrid& grid, double x, double y, PixelNeighbourhood
   const double last_row = grid.height - 1;
   if (grid.period > 0) {
     const double start = grid.wraps ? 0.0 : (last_column - grid.period) / 2;
-    x -= grid.period * std::floor((x - start) / grid.period);
-    if (x >= start + grid.period || x < start) x = start;
+    if (x < start || x >= start + grid.period) {
+      x -= grid.period * std::floor((x - start) / grid.period);
+      if (x >= start + grid.period || x < start) x = start;
+    }
   }
   if (grid.wraps) {
     place.column = static_cast<int>(x < last_column ? x : last_column);
@@ -89,7 +91,8 @@ inline bool locate(const PixelGrid& grid, double x, double y, PixelNeighbourhood
   place.pole = Pole::kNone;
   place.pole_share = 0;
   place.fy = 0;
-  if (grid.has_first_pole()) {
+  // Poles that are not included have infinite rows. Rounding to rows takes longer than all else.
+  if (y < grid.first_pole_row + 1) {
     const double first = std::floor(grid.first_pole_row) + 1;
     if (y < first) {
       place.row = static_cast<int>(first);
@@ -98,7 +101,7 @@ inline bool locate(const PixelGrid& grid, double x, double y, PixelNeighbourhood
       return true;
     }
   }
-  if (grid.has_last_pole()) {
+  if (y > grid.last_pole_row - 1) {
     const double last = std::ceil(grid.last_pole_row) - 1;
     if (y > last) {
       place.row = static_cast<int>(last);

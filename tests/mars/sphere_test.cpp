@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "mars/geodesy/angles.h"
 #include "tests/mars/exact.h"
 #include "tests/support/support.h"
 
@@ -451,6 +452,50 @@ TEST(Sphere, HorizonIsWithinItsBound) {
   for (const double alt_m : {0.0, -0.0, -1.0, -1e9}) {
     EXPECT_EQ(horizon_distance_m(alt_m, kMarsRadius_m), 0.0);
     EXPECT_EQ(horizon_dip_rad(alt_m, kMarsRadius_m), 0.0);
+  }
+}
+
+TEST(Sphere, LonLatOfManyIsThatOfAtan2) {
+  test_support::Random random(14);
+  std::vector<glm::dvec3> directions;
+  for (const double x : {0.0, -0.0, 1.0, -1.0}) {
+    for (const double y : {0.0, -0.0, 1.0, -1.0, 5e-324, -1e-300}) {
+      for (const double z : {0.0, -0.0, 1.0, -1.0, 1e-200}) directions.emplace_back(x, y, z);
+    }
+  }
+  for (int n = 0; n < 200000; ++n) {
+    glm::dvec3 d = random.direction() * random.log_uniform(1e-3, 1e3);
+    if (n % 5 == 0) d[n % 3] *= random.log_uniform(1e-30, 1);
+    if (n % 7 == 0) d.y = n % 2 == 0 ? d.x : -d.x;
+    directions.push_back(d);
+  }
+  for (const double scale : {1.0, 0.9941}) {
+    std::vector<glm::dvec2> angles(directions.size());
+    std::vector<glm::dvec2> plain(directions.size());
+    lon_lat_deg(directions, scale, angles);
+    lon_lat_deg_plain(directions, scale, plain);
+    Bound bound("longitude or latitude of many: relative");
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      const glm::dvec3& d = directions[n];
+      for (const int k : {0, 1}) {
+        const double own = angles[n][k];
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(own), std::bit_cast<std::uint64_t>(plain[n][k]));
+        const double up = k == 0 ? d.y : d.z;
+        const double along = k == 0 ? d.x : std::sqrt(d.x * d.x + d.y * d.y) * scale;
+        const Real radians = std::atan2(Real{up}, Real{along});
+        ASSERT_EQ(std::signbit(own), std::signbit(up));
+        if (std::abs(radians) < 1e-300L) {
+          ASSERT_LE(std::abs(own), 1e-297);
+          continue;
+        }
+        const Real want = radians * 180 / std::acos(Real{-1});
+        bound.add(std::abs(own - want) / std::abs(want), kLonLatDegError);
+        // Axes and diagonals have the very values of std::atan2(), so that posts on them keep their halves.
+        if (up == 0 || along == 0 || std::abs(up) == std::abs(along)) {
+          ASSERT_EQ(own, std::atan2(up, along) / kRadiansPerDegree);
+        }
+      }
+    }
   }
 }
 
