@@ -60,13 +60,17 @@ class Meter {
   // Neighbours mostly lie in one tile.
   void locate(std::span<SourcePost> posts) const {
     std::size_t last = kNowhere;
+    mars::ChartRect inside;  // of the last tile
     for (SourcePost& p : posts) {
       p.point = mars::chart_point(p.direction);
-      if (last == kNowhere || leaves_[last] != lod::tile_at(p.point, leaves_[last].level)) {
+      const bool is_inside = last != kNowhere && p.point.face == leaves_[last].face && p.point.u > inside.u0 &&
+                             p.point.u < inside.u1 && p.point.v > inside.v0 && p.point.v < inside.v1;
+      if (!is_inside) {
         const lod::TileKey key = lod::tile_at(p.point, sampling_.plan.leaf_level(p.point));
         const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, morton_less);
         last =
             leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
+        if (last != kNowhere) inside = lod::chart_rect(key);
       }
       p.leaf = last;
     }

@@ -32,20 +32,32 @@ std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
 
-std::int32_t predict(std::span<const std::int32_t> h, std::size_t i, std::size_t j, std::size_t side) {
-  const std::size_t at = j * side + i;
-  if (i == 0) return j == 0 ? 0 : h[at - side];
-  if (j == 0) return h[at - 1];
-  return wrap_add(h[at - 1], wrap_sub(h[at - side], h[at - side - 1]));
-}
+// A height is predicted from the posts in the west, in the south and between both, so that what is stored are the changes of
+// the step from one post to the next, from row to row. The first post of a row follows that in the south of it, and the
+// steps of the row before the first are 0.
+using Steps = std::vector<std::uint32_t>;
 
-void put_varint(Bytes& out, std::uint32_t x) {
-  while (x >= 0x80U) {
-    out.push_back(static_cast<std::uint8_t>(x | 0x80U));
-    x >>= 7;
+// Writes numbers to bytes that have room for them.
+class Writer {
+ public:
+  static constexpr std::size_t kMostBytes = 5;  // of a number
+
+  explicit Writer(std::size_t most_numbers) : bytes_(most_numbers * kMostBytes) {}
+
+  void varint(std::uint32_t x) {
+    while (x >= 0x80U) {
+      bytes_[size_++] = static_cast<std::uint8_t>(x | 0x80U);
+      x >>= 7;
+    }
+    bytes_[size_++] = static_cast<std::uint8_t>(x);
   }
-  out.push_back(static_cast<std::uint8_t>(x));
-}
+
+  std::span<const std::uint8_t> bytes() const { return std::span(bytes_).first(size_); }
+
+ private:
+  Bytes bytes_;
+  std::size_t size_ = 0;
+};
 
 class Reader {
  public:
@@ -119,13 +131,19 @@ Bytes encode_heights(std::span<const std::int32_t> quanta, int side) {
   const std::size_t count = n * n;
   if (quanta.size() != count) throw CodecError("heights: wrong number of posts");
   Bytes planes(4 * count);
+  Steps steps(n);
+  std::vector<std::uint32_t> rest(n);
   for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t at = j * n + i;
-      const std::uint32_t rest = zigzag(wrap_sub(quanta[at], predict(quanta, i, j, n)));
-      for (std::size_t plane = 0; plane < 4; ++plane) {
-        planes[plane * count + at] = static_cast<std::uint8_t>(rest >> (8 * plane));
-      }
+    const std::int32_t* row = quanta.data() + j * n;
+    const auto change = [&](std::size_t i, std::uint32_t step) {
+      rest[i] = zigzag(static_cast<std::int32_t>(step - steps[i]));
+      steps[i] = step;
+    };
+    change(0, static_cast<std::uint32_t>(row[0]));
+    for (std::size_t i = 1; i < n; ++i) change(i, static_cast<std::uint32_t>(wrap_sub(row[i], row[i - 1])));
+    for (std::size_t plane = 0; plane < 4; ++plane) {
+      std::uint8_t* out = planes.data() + plane * count + j * n;
+      for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<std::uint8_t>(rest[i] >> (8 * plane));
     }
   }
   return compress(planes, kHeightsLevel);
@@ -137,14 +155,17 @@ std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, i
   const Bytes planes = decompress(packed, 4 * count);
   if (planes.size() != 4 * count) throw CodecError("heights: wrong number of posts");
   std::vector<std::int32_t> quanta(count);
+  Steps steps(n);
   for (std::size_t j = 0; j < n; ++j) {
+    const std::uint8_t* in = planes.data() + j * n;
     for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t at = j * n + i;
-      const std::uint32_t rest = std::uint32_t{planes[at]} | std::uint32_t{planes[count + at]} << 8 |
-                                 std::uint32_t{planes[2 * count + at]} << 16 |
-                                 std::uint32_t{planes[3 * count + at]} << 24;
-      quanta[at] = wrap_add(predict(quanta, i, j, n), unzigzag(rest));
+      const std::uint32_t rest = std::uint32_t{in[i]} | std::uint32_t{in[count + i]} << 8 |
+                                 std::uint32_t{in[2 * count + i]} << 16 |
+                                 std::uint32_t{in[3 * count + i]} << 24;
+      steps[i] += static_cast<std::uint32_t>(unzigzag(rest));
     }
+    std::uint32_t height = 0;
+    for (std::size_t i = 0; i < n; ++i) quanta[j * n + i] = static_cast<std::int32_t>(height += steps[i]);
   }
   return quanta;
 }
@@ -190,31 +211,30 @@ Bytes encode_mesh(const PackedMesh& packed) {
   const lod::TileMesh& mesh = packed.mesh;
   if (packed.height_q.size() != mesh.vertices.size())
     throw CodecError("mesh: the number of heights is not the number of vertices");
-  Bytes raw;
-  raw.reserve(5 * mesh.vertices.size() + 4 * mesh.triangle_count());
-  put_varint(raw, static_cast<std::uint32_t>(mesh.intervals));
-  put_varint(raw, static_cast<std::uint32_t>(mesh.vertices.size()));
-  put_varint(raw, static_cast<std::uint32_t>(mesh.triangle_count()));
+  Writer out(3 + 2 * mesh.vertices.size() + 3 * mesh.triangle_count());
+  out.varint(static_cast<std::uint32_t>(mesh.intervals));
+  out.varint(static_cast<std::uint32_t>(mesh.vertices.size()));
+  out.varint(static_cast<std::uint32_t>(mesh.triangle_count()));
   std::uint32_t last = 0;
   const auto side = static_cast<std::uint32_t>(mesh.intervals) + 1;
   for (const lod::MeshVertex& v : mesh.vertices) {
     const std::uint32_t at = v.j * side + v.i;
-    put_varint(raw, at - last);
+    out.varint(at - last);
     last = at;
   }
   std::int32_t height = 0;
   for (const std::int32_t h : packed.height_q) {
-    put_varint(raw, zigzag(wrap_sub(h, height)));
+    out.varint(zigzag(wrap_sub(h, height)));
     height = h;
   }
   std::uint32_t first = 0;
   for (const Triangle& t : normalized(mesh.triangles)) {
-    put_varint(raw, t[0] - first);
-    put_varint(raw, static_cast<std::uint32_t>(t[1] - t[0]));
-    put_varint(raw, static_cast<std::uint32_t>(t[2] - t[0]));
+    out.varint(t[0] - first);
+    out.varint(static_cast<std::uint32_t>(t[1] - t[0]));
+    out.varint(static_cast<std::uint32_t>(t[2] - t[0]));
     first = t[0];
   }
-  return compress(raw, kMeshLevel);
+  return compress(out.bytes(), kMeshLevel);
 }
 
 PackedMesh decode_mesh(std::span<const std::uint8_t> packed, int expected_intervals) {
