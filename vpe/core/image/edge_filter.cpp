@@ -1,11 +1,10 @@
 #include "vpe/core/image/edge_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -14,54 +13,93 @@ namespace vpe::core {
 namespace {
 
 constexpr int kRows = 16;  // of an item of work
+// Between an image's border and pixels whose filter reads nothing beyond it.
+constexpr int kReach = 6;
 
+// Four numbers that the compiler keeps in a register: red, green, blue and one without meaning.
+using Four = float __attribute__((vector_size(16)));
+using FourInts = std::int32_t __attribute__((vector_size(16)));
+
+// Reads pixels. Unless kInside, places beyond the border have the colours there.
+template <bool kInside>
 struct ColourPixels {
-  std::span<const base::Rgb> pixels;
+  const base::Rgb* pixels;
   int width;
   int height;
 
-  glm::vec3 at(int x, int y) const {
-    const auto row = static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width);
-    const base::Rgb p = pixels[row + static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
-    return {p.r, p.g, p.b};
+  const base::Rgb& pixel(int x, int y) const {
+    if constexpr (!kInside) {
+      x = std::clamp(x, 0, width - 1);
+      y = std::clamp(y, 0, height - 1);
+    }
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
+  Four at(int x, int y) const {
+    const base::Rgb& p = pixel(x, y);
+    return __builtin_convertvector((FourInts{p.r, p.g, p.b, 0}), Four);
   }
   // Returns a bilinear mean; pixel centres are at whole numbers.
-  glm::vec3 between(const glm::vec2& p) const {
-    const glm::vec2 base = glm::floor(p);
-    const glm::vec2 t = p - base;
-    const int x = static_cast<int>(base.x);
-    const int y = static_cast<int>(base.y);
-    return (at(x, y) * (1 - t.x) + at(x + 1, y) * t.x) * (1 - t.y) +
-           (at(x, y + 1) * (1 - t.x) + at(x + 1, y + 1) * t.x) * t.y;
+  Four between(float px, float py) const {
+    const int x = floor(px);
+    const int y = floor(py);
+    const float tx = px - static_cast<float>(x);
+    const float ty = py - static_cast<float>(y);
+    return (at(x, y) * (1 - tx) + at(x + 1, y) * tx) * (1 - ty) +
+           (at(x, y + 1) * (1 - tx) + at(x + 1, y + 1) * tx) * ty;
   }
-  // Returns the brightness of the four pixels about a corner.
-  float luma(int x, int y) const {
-    return 0.25F *
-           glm::dot(at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1), glm::vec3(0.30F, 0.59F, 0.11F));
+
+ private:
+  static int floor(float value) {
+    const int whole = static_cast<int>(value);
+    return static_cast<float>(whole) > value ? whole - 1 : whole;
   }
 };
 
-base::Rgb smoothed(const ColourPixels& image, int x, int y) {
-  const float upper_left = image.luma(x - 1, y - 1);
-  const float upper_right = image.luma(x, y - 1);
-  const float lower_left = image.luma(x - 1, y);
-  const float lower_right = image.luma(x, y);
-  // At right angles to the gradient of brightness.
-  glm::vec2 along(upper_left + upper_right - lower_left - lower_right,
-                  -(upper_left + lower_left - upper_right - lower_right));
-  const glm::vec3 own = image.at(x, y);
-  glm::vec3 mixed = own;
-  if (glm::dot(along, along) >= 0.06F) {
-    along /= std::max(std::abs(along.x), std::abs(along.y));
-    // The flatter the edge, the longer its steps.
-    along /= std::max(std::min(std::abs(along.x), std::abs(along.y)), 0.2F);
-    const glm::vec2 here(x, y);
-    const glm::vec3 sum = image.between(here - 0.25F * along) + image.between(here + 0.25F * along) +
-                          image.between(here - 0.75F * along) + image.between(here + 0.75F * along);
-    mixed = own * 0.25F + sum * (0.75F / 4);
+// Returns the brightness of four pixels with this sum.
+float luma(const Four& sum) {
+  const Four parts = sum * Four{0.30F, 0.59F, 0.11F, 0};
+  return 0.25F * (parts[0] + parts[1] + parts[2]);
+}
+
+std::uint8_t byte(float value) {
+  const float inside = std::clamp(value, 0.0F, 255.0F);
+  const int whole = static_cast<int>(inside);
+  return static_cast<std::uint8_t>(inside - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole);
+}
+
+template <bool kInside>
+base::Rgb smoothed(const ColourPixels<kInside>& image, int x, int y) {
+  const Four own = image.at(x, y);
+  // Sums of whole numbers are exact in any order.
+  std::array<Four, 3> upper, lower;
+  for (int n = 0; n < 3; ++n) {
+    const Four middle = n == 1 ? own : image.at(x - 1 + n, y);
+    upper[static_cast<std::size_t>(n)] = image.at(x - 1 + n, y - 1) + middle;
+    lower[static_cast<std::size_t>(n)] = image.at(x - 1 + n, y + 1) + middle;
   }
-  const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0F, 255.0F))); };
-  return {byte(mixed.x), byte(mixed.y), byte(mixed.z)};
+  const float upper_left = luma(upper[0] + upper[1]);
+  const float upper_right = luma(upper[1] + upper[2]);
+  const float lower_left = luma(lower[0] + lower[1]);
+  const float lower_right = luma(lower[1] + lower[2]);
+  // At right angles to the gradient of brightness.
+  float along_x = upper_left + upper_right - lower_left - lower_right;
+  float along_y = -(upper_left + lower_left - upper_right - lower_right);
+  if (!(along_x * along_x + along_y * along_y >= 0.06F)) return image.pixel(x, y);
+  const float larger = std::max(std::abs(along_x), std::abs(along_y));
+  along_x /= larger;
+  along_y /= larger;
+  // The flatter the edge, the longer its steps.
+  const float longer = std::max(std::min(std::abs(along_x), std::abs(along_y)), 0.2F);
+  along_x /= longer;
+  along_y /= longer;
+  const auto here_x = static_cast<float>(x);
+  const auto here_y = static_cast<float>(y);
+  const auto beside = [&](float share) {
+    return image.between(here_x + share * along_x, here_y + share * along_y);
+  };
+  const Four sum = beside(-0.25F) + beside(0.25F) + beside(-0.75F) + beside(0.75F);
+  const Four mixed = own * 0.25F + sum * (0.75F / 4);
+  return {byte(mixed[0]), byte(mixed[1]), byte(mixed[2])};
 }
 
 // Sets `edge` to 1 where the surface bends between a pixel and its four neighbours. Has no branches, so that
@@ -88,18 +126,29 @@ void smooth_edges(std::span<base::Rgb> colour, std::span<const float> inverse_de
     throw std::invalid_argument("smooth_edges: the image and its depth are not of the stated size");
   }
   const std::vector<base::Rgb> before(colour.begin(), colour.end());
-  const ColourPixels image{before, width, height};
+  const ColourPixels<true> inside{before.data(), width, height};
+  const ColourPixels<false> border{before.data(), width, height};
   pool.run(static_cast<std::size_t>((height + kRows - 1) / kRows), [&](std::size_t item) {
-    std::vector<std::uint8_t> edge(columns);
+    constexpr std::size_t kWord = sizeof(std::uint64_t);
+    // Padded, so that whole words of it can be looked through.
+    std::vector<std::uint8_t> edge(columns + kWord);
     const int first = static_cast<int>(item) * kRows;
     const auto row = [&](int y) {
       return &inverse_depth[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * columns];
     };
     for (int y = first; y < std::min(height, first + kRows); ++y) {
       find_edges(row(y - 1), row(y), row(y + 1), width, edge.data());
-      for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::size_t>(x);
-        if (edge[at] != 0) colour[static_cast<std::size_t>(y) * columns + at] = smoothed(image, x, y);
+      base::Rgb* const out = &colour[static_cast<std::size_t>(y) * columns];
+      const bool is_inside = y >= kReach && y < height - kReach;
+      for (int begin = 0; begin < width; begin += static_cast<int>(kWord)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, &edge[static_cast<std::size_t>(begin)], kWord);
+        if (word == 0) continue;
+        for (int x = begin; x < std::min(begin + static_cast<int>(kWord), width); ++x) {
+          if (edge[static_cast<std::size_t>(x)] == 0) continue;
+          out[x] =
+              is_inside && x >= kReach && x < width - kReach ? smoothed(inside, x, y) : smoothed(border, x, y);
+        }
       }
     }
   });
