@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "lod/tree/facet_mask.h"
@@ -20,9 +21,10 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-// Returns the bits of the pixels whose place is in the square, and sets the places of all.
+// Returns the bits of those pixels of `left` whose place is in the square. Sets their places in the grid, and those of the
+// lowest pixel of `left`.
 inline HWY_NOINLINE std::uint32_t inside_facets(const FacetSquare& square, const Chart& chart,
-                                                FacetPlaces& at) {
+                                                std::uint32_t left, FacetPlaces& at) {
   const Doubles d;
   const Halves dh;
   const hn::Rebind<std::int32_t, Doubles> di;
@@ -33,10 +35,16 @@ inline HWY_NOINLINE std::uint32_t inside_facets(const FacetSquare& square, const
   const auto cell = [&](auto share, double first, double span) HWY_ATTR {
     return hn::Min(hn::Max(hn::Add(hn::Set(d, first), hn::Mul(share, hn::Set(d, span))), zero), last);
   };
+  const std::uint32_t lowest = left & (~left + 1);
+  const std::uint32_t lanes = (std::uint32_t{1} << hn::Lanes(d)) - 1;
   std::uint32_t bits = 0;
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
     const auto x = hn::Mul(hn::Sub(hn::Load(d, chart.u + i), hn::Set(d, square.u0)), hn::Set(d, square.per_u));
     const auto y = hn::Mul(hn::Sub(hn::Load(d, chart.v + i), hn::Set(d, square.v0)), hn::Set(d, square.per_v));
+    const auto low = hn::And(hn::Ge(x, zero), hn::Ge(y, zero));
+    const std::uint32_t here = left & bits_of(d, hn::And(low, hn::And(hn::Lt(x, one), hn::Lt(y, one))), i);
+    bits |= here;
+    if ((here | (lowest & (lanes << i))) == 0) continue;
     const auto x_line = cell(x, square.first_x, square.span_x);
     const auto y_line = cell(y, square.first_y, square.span_y);
     const auto column = hn::Min(hn::Trunc(x_line), hn::Sub(last, one));
@@ -50,8 +58,6 @@ inline HWY_NOINLINE std::uint32_t inside_facets(const FacetSquare& square, const
     hn::Store(y_rest, dh, at.y + i);
     const auto above = hn::RebindMask(di, hn::Lt(x_rest, y_rest));
     hn::Store(hn::IfThenElse(above, hn::Set(di, square.tile->side), hn::Set(di, 1)), di, at.second + i);
-    const auto low = hn::And(hn::Ge(x, zero), hn::Ge(y, zero));
-    bits |= bits_of(d, hn::And(low, hn::And(hn::Lt(x, one), hn::Lt(y, one))), i);
   }
   return bits;
 }
@@ -90,14 +96,14 @@ inline HWY_NOINLINE void locate_facets(PaintTiles& tiles, const FacetSquare*& sq
   if (square != nullptr) set_chart(*square, block, chart);
   FacetPlaces at;
   for (std::uint32_t left = block.ground; left != 0;) {
-    std::uint32_t here = square == nullptr ? 0 : inside_facets(*square, chart, at) & left;
+    std::uint32_t here = square == nullptr ? 0 : inside_facets(*square, chart, left, at);
     if (here == 0) {
       const int i = __builtin_ctz(left);
       square = &tiles.find_facets({block.place[0][i], block.place[1][i], block.place[2][i]});
       if (charted != static_cast<int>(square->face)) set_chart(*square, block, chart);
       charted = static_cast<int>(square->face);
       // The pixel that the square was found for belongs to it, even if rounding puts it just outside.
-      here = (inside_facets(*square, chart, at) & left) | (std::uint32_t{1} << i);
+      here = inside_facets(*square, chart, left, at) | (std::uint32_t{1} << i);
     }
     left &= ~here;
     find_facets(*square, at, here, block);
@@ -168,6 +174,21 @@ inline HWY_NOINLINE void take_middles(const FacetSquare& square, const FacetPost
     hn::Store(hn::Add(column, hn::Mul(hn::IfThenElse(lower, two, z2), per_sum)), d, across + i);
     hn::Store(hn::Add(row, hn::Mul(hn::IfThenElse(lower, z2, two), per_sum)), d, up + i);
   }
+  if (pixels == block.ground && block.nodata == 0) {
+    const Doubles dd;
+    const Halves dh;
+    const auto along = [&](double sign, const FacetSquare::Line& line, const float* cells,
+                           double* out) HWY_ATTR {
+      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
+        const auto from_line = hn::Mul(hn::Set(dd, line.width), hn::PromoteTo(dd, hn::Load(dh, cells + i)));
+        hn::Store(hn::Mul(hn::Set(dd, sign), hn::Add(hn::Set(dd, line.at), from_line)), dd, out + i);
+      }
+    };
+    along(square.sign[0], square.west, across, block.middle[square.axis[0]]);
+    along(square.sign[1], square.south, up, block.middle[square.axis[1]]);
+    std::fill_n(block.middle[square.axis[2]], kBlock, square.sign[2]);
+    return;
+  }
   for (std::uint32_t left = pixels & ~block.nodata; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     block.middle[square.axis[0]][i] =
@@ -228,8 +249,9 @@ inline HWY_NOINLINE void take_facet_normals(const FacetSquare& square, const Fac
 // locate_facets().
 inline HWY_NOINLINE void take_facets(const PaintJob& job, bool middles, Block& block) {
   if (middles) {
+    const bool sets_all = block.facets.squares == 1 && block.nodata == 0;
     for (int c = 0; c < 3; ++c) {
-      std::memcpy(block.middle[c], block.place[c], sizeof block.middle[c]);
+      if (!sets_all) std::memcpy(block.middle[c], block.place[c], sizeof block.middle[c]);
       block.shown[c] = block.middle[c];
     }
   }
