@@ -19,14 +19,17 @@ namespace paging {
 // Of a finest tile the posts are the reference surface. Of a tile above finest tiles those of its children are. Higher up the
 // errors of the children's posts are added, where the planet file states them.
 //
-// Thread rule: any thread may call find().
+// Thread rule: any thread may call any member.
 class TileErrors {
  public:
-  explicit TileErrors(std::shared_ptr<const PlanetFile> planet)
+  static constexpr std::size_t kUsualBytes = std::size_t{12} << 20;  // some 800 tiles
+
+  // Keeps within the budget, a third for each of three kinds, except for the newest of each kind.
+  explicit TileErrors(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes = kUsualBytes)
       : planet_(std::move(planet)),
-        posts_(std::make_shared<PostsCache>(kPostsBytes)),
-        of_meshes_(std::make_shared<Cache>(kBytes)),
-        kept_(std::make_shared<Cache>(kBytes)) {}
+        posts_(std::make_shared<PostsCache>(budget_bytes / 3)),
+        of_meshes_(std::make_shared<Cache>(budget_bytes / 3)),
+        kept_(std::make_shared<Cache>(budget_bytes / 3)) {}
   // Shares what is kept with those of another version of the planet: tiles that are equal in both are measured once.
   TileErrors(std::shared_ptr<const PlanetFile> planet, const TileErrors& former)
       : planet_(std::move(planet)), posts_(former.posts_), of_meshes_(former.of_meshes_), kept_(former.kept_) {}
@@ -38,6 +41,9 @@ class TileErrors {
   Pointer find(const lod::SelectedTile& tile, double exaggeration);
   // Returns the same without reading anything, or nullopt if find() would have to.
   std::optional<Pointer> find_measured(const lod::SelectedTile& tile, double exaggeration);
+
+  // Returns the bytes of all that is kept.
+  std::size_t bytes() const { return posts_->bytes() + of_meshes_->bytes() + kept_->bytes(); }
 
  private:
   struct Key {
@@ -64,8 +70,6 @@ class TileErrors {
   lod::BlockErrors measure(const lod::SelectedTile& tile, double exaggeration) const;
   Pointer find_mesh(const lod::SelectedTile& tile, double exaggeration);
 
-  static constexpr std::size_t kPostsBytes = std::size_t{4} << 20;
-  static constexpr std::size_t kBytes = std::size_t{4} << 20;  // some 800 tiles
   std::shared_ptr<const PlanetFile> planet_;
   std::shared_ptr<PostsCache> posts_;  // of children, for a patch of one of four
   // Against the posts, without what is below them; without blocks where tiles could not be read.

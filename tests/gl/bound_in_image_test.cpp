@@ -194,4 +194,39 @@ TEST(TileErrors, BoundMeshesOverTheirBlocks) {
   EXPECT_EQ(errors.find(root, 2), nullptr);
 }
 
+TEST(TileErrors, KeepWithinTheirBudgetAndStayTheSame) {
+  const test_support::TempDir dir;
+  const auto planet =
+      test_support::build_fake(dir / "p.vpe", test_support::FakeElevation(test_support::bumpy_height), 30000);
+  const lod::TileTree& tree = planet->tree();
+  // Room for a few tiles of each kind.
+  constexpr std::size_t kBudget = std::size_t{1} << 20;
+  paging::TileErrors small(planet, kBudget);
+  paging::TileErrors large(planet);
+  EXPECT_EQ(small.bytes(), 0U);
+  int found = 0;
+  for (lod::TileTree::Index n = 0; n < tree.size(); ++n) {
+    const lod::TileInfo& info = tree[n];
+    for (int variant = 0; variant < static_cast<int>(info.variants.size()); ++variant) {
+      lod::SelectedTile tile;
+      tile.key = info.key;
+      tile.index = n;
+      tile.variant = variant;
+      tile.geometric_error_m =
+          tree.geometric_error_m(info, info.variants[static_cast<std::size_t>(variant)].terms, 1);
+      const auto a = small.find(tile, 1);
+      const auto b = large.find(tile, 1);
+      ASSERT_EQ(a == nullptr, b == nullptr);
+      if (!a) continue;
+      EXPECT_EQ(a->bound_m, b->bound_m);
+      EXPECT_LE(small.bytes(), kBudget);
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 50);
+  EXPECT_GT(small.bytes(), kBudget / 4);
+  EXPECT_GT(large.bytes(), kBudget);
+  EXPECT_LE(large.bytes(), paging::TileErrors::kUsualBytes);
+}
+
 }  // namespace

@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "paging/surface/tile_errors.h"
 #include "tests/gl/certified.h"
 
 namespace {
@@ -249,6 +250,19 @@ TEST_F(Paging, WaitingEndsAndReportsWhatIsMissing) {
   const DrawResult whole = draw->draw(request);
   EXPECT_TRUE(whole.missing.empty());
   EXPECT_EQ(whole.frame.colour, renderer(planet_)->draw(request).frame.colour);
+}
+
+// What only certificates need is memory too.
+TEST_F(Paging, ErrorsOfBlocksAreCounted) {
+  DrawRequest request = flight_at(0.5);
+  request.want_range = false;
+  const auto draw = renderer(planet_);
+  const std::int64_t without = draw->draw(request).stats.bytes_resident;
+  EXPECT_EQ(draw->draw(request).stats.bytes_resident, without);
+  request.want_range = true;
+  const std::int64_t with = draw->draw(request).stats.bytes_resident;
+  EXPECT_GT(with, without);
+  EXPECT_LE(with, without + static_cast<std::int64_t>(paging::TileErrors::kUsualBytes));
 }
 
 TEST_F(Paging, MemoryStaysWithinTheBudgetOnAFlight) {

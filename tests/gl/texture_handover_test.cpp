@@ -52,7 +52,6 @@ class TextureHandover : public test_support::GlTest {
     if (handover_->drawn != nullptr) {
       EXPECT_NE(glClientWaitSync(static_cast<GLsync>(handover_->drawn), 0, 1'000'000'000),
                 GLenum{GL_TIMEOUT_EXPIRED});
-      glDeleteSync(static_cast<GLsync>(handover_->drawn));
     }
     return result;
   }
@@ -172,6 +171,21 @@ TEST_F(TextureHandover, WhatIsCountedOnTheCpuIsPixels) {
   asked.want_range = true;
   EXPECT_FALSE(draw_texture(asked).frame.colour.empty());
   EXPECT_FALSE(handover_->is_drawn);
+}
+
+// Nobody has to take an image.
+TEST_F(TextureHandover, FencesEndWithTheNextImageAndTheRenderer) {
+  (void)draw_texture(request());
+  const auto first = static_cast<GLsync>(handover_->drawn);
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(glIsSync(first), GL_TRUE);
+  (void)draw_texture(request());
+  const auto second = static_cast<GLsync>(handover_->drawn);
+  ASSERT_NE(second, first);
+  EXPECT_EQ(glIsSync(first), GL_FALSE);
+  EXPECT_EQ(glIsSync(second), GL_TRUE);
+  renderer_.reset();
+  EXPECT_EQ(glIsSync(second), GL_FALSE);
 }
 
 TEST_F(TextureHandover, TheNextPixelsAreAsBefore) {

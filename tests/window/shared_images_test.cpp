@@ -1,10 +1,16 @@
 // Images of triangles that stay in the window's textures.
 #include <gtest/gtest.h>
 
+#include <epoxy/gl.h>
+
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "tests/window/explore_window_fixture.h"
 
@@ -48,6 +54,42 @@ class LostPainter : public Painter {
  private:
   LostContext context_;
   std::unique_ptr<Painter> painter_;
+};
+
+// Counts, when the window has closed, how many fences of its images are left.
+class FencePainter : public Painter {
+ public:
+  struct Counts {
+    std::atomic<int> made = 0;
+    std::atomic<int> left = -1;
+  };
+  FencePainter(std::unique_ptr<Painter> painter, std::shared_ptr<Counts> counts)
+      : painter_(std::move(painter)), counts_(std::move(counts)) {}
+  ~FencePainter() override {
+    painter_.reset();
+    int left = 0;
+    if (context_ != nullptr) {
+      context_->make_current();
+      for (void* fence : fences_) left += glIsSync(static_cast<GLsync>(fence)) == GL_TRUE ? 1 : 0;
+      context_->release();
+    }
+    counts_->left = left;
+  }
+  DrawnImage paint(const ImageRequest& request) override {
+    context_ = request.place.context;
+    DrawnImage drawn = painter_->paint(request);
+    if (drawn.drawn != nullptr) {
+      fences_.push_back(drawn.drawn);
+      ++counts_->made;
+    }
+    return drawn;
+  }
+
+ private:
+  std::unique_ptr<Painter> painter_;
+  std::shared_ptr<Counts> counts_;
+  DrawContext* context_ = nullptr;
+  std::vector<void*> fences_;
 };
 
 class SharedImagesTest : public ExploreWindowTest {
@@ -164,6 +206,28 @@ TEST_F(SharedImagesTest, ALostContextLeavesThePaintersOwn) {
   EXPECT_FALSE(window_->drawn()->is_in_texture);
   EXPECT_FALSE(window_->image().pixels.empty());
   EXPECT_LE(difference_on_screen(), 1);
+}
+
+TEST_F(SharedImagesTest, AWindowThatClosesBeforeItTakesItsImageLeavesNoFence) {
+  const auto counts = std::make_shared<FencePainter::Counts>();
+  wrap_painter_ = [&](std::unique_ptr<Painter> painter) -> std::unique_ptr<Painter> {
+    return std::make_unique<FencePainter>(std::move(painter), counts);
+  };
+  open_with(explore::DrawContextChoice::kShared);
+  settle();
+  ASSERT_TRUE(window_->drawn()->is_in_texture);
+  // Images are drawn until one is finished that the window has not taken.
+  int taken = shared().count();
+  for (int n = 0; n < 100 && counts->made == taken; ++n) {
+    window_->session().put({20.0 + n, 10, 30'000, 30, -25, 0});
+    iterate(1);
+    for (int wait = 0; wait < 200 && counts->made == shared().count(); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    taken = shared().count();
+  }
+  ASSERT_GT(counts->made, taken);
+  window_.reset();
+  EXPECT_EQ(counts->left, 0);
 }
 
 TEST_F(SharedImagesTest, AutoNeedsAGpu) {

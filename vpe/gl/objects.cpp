@@ -98,6 +98,17 @@ Program make_program(const std::string& label, const char* vertex, const char* f
   return program;
 }
 
+Fence Fence::make() {
+  Fence fence;
+  fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+  return fence;
+}
+
+Fence::~Fence() {
+  if (sync_ != nullptr) glDeleteSync(sync_);
+}
+
 void check_gl(const char* operation) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;

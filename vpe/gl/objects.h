@@ -8,7 +8,7 @@
 
 namespace vpe::gl {
 
-// Owns an OpenGL object, or none; movable, not copyable. Traits has create() and destroy(name). Objects must be
+// Owns an OpenGL object with a name, or none; movable, not copyable. Traits has create() and destroy(name). Objects must be
 // made and destroyed while their context is current.
 template <typename Traits>
 class Object {
@@ -66,6 +66,26 @@ using Texture2D = Object<Texture2DTraits>;
 using Framebuffer = Object<FramebufferTraits>;
 using Renderbuffer = Object<RenderbufferTraits>;
 using Program = Object<ProgramTraits>;
+
+// Owns a fence among the commands of the current context, or none; movable, not copyable. Must be destroyed while its context,
+// or one that shares objects with it, is current.
+class Fence {
+ public:
+  Fence() = default;
+  // Makes a fence behind the commands so far, and sends them.
+  static Fence make();
+  Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+  Fence& operator=(Fence&& other) noexcept {
+    std::swap(sync_, other.sync_);
+    return *this;
+  }
+  ~Fence();
+  // Returns OpenGL's object, or null.
+  GLsync sync() const { return sync_; }
+
+ private:
+  GLsync sync_ = nullptr;
+};
 
 // Compiles and links a program. geometry: null = no such stage. Throws std::runtime_error with the driver's
 // log; `label` names the program in the message.

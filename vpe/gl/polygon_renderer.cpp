@@ -53,6 +53,11 @@ glm::vec4 level_tint(int level) {
 // For the few tiles below the camera.
 constexpr std::size_t kSurfaceBytes = std::size_t{4} << 20;
 
+// Of the memory, for errors of blocks.
+std::size_t errors_bytes(std::size_t memory_bytes) {
+  return std::min(paging::TileErrors::kUsualBytes, memory_bytes / 64);
+}
+
 class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
  public:
   PolygonRenderer(std::shared_ptr<Context> context, std::shared_ptr<const paging::PlanetFile> planet,
@@ -60,7 +65,7 @@ class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
       : context_(std::move(context)),
         planet_(std::move(planet)),
         surface_(planet_, kSurfaceBytes),
-        errors_(std::make_shared<paging::TileErrors>(planet_)),
+        errors_(std::make_shared<paging::TileErrors>(planet_, errors_bytes(options.memory_bytes))),
         pool_(options.threads),
         scene_(planet_, options),
         tiles_(planet_->radius_m()),
@@ -113,6 +118,7 @@ class PolygonRenderer : public core::Renderer, public paging::PlanetUser {
   Program sky_program_;                               // made for the first sky
   std::shared_ptr<TextureHandover> handover_;         // null: images are pixels
   std::optional<TextureFinish> finish_;               // made for the first image that is handed over
+  Fence handed_over_;                                 // behind the image that was handed over last
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
   std::optional<Target> range_target_;
@@ -457,8 +463,8 @@ void PolygonRenderer::hand_over(const Target& image, const core::DrawRequest& re
   }
   handover_->range_m = std::move(depths);
   handover_->bytes = finish_->bytes();
-  handover_->drawn = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  glFlush();
+  handed_over_ = Fence::make();
+  handover_->drawn = handed_over_.sync();
   handover_->is_drawn = true;
   check_gl("hand over the image");
 }
@@ -513,6 +519,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   settled_ = result.settled;
   lacks_errors_ = false;
   result.certificate = certify(request, clip, result.frame);
+  result.stats.bytes_resident += static_cast<std::int64_t>(surface_.bytes_resident() + errors_->bytes());
   if (lacks_errors_) result.settled = false;
   if (has_rough_range_) result.frame.range_m.swap(depth_);
   result.certificate.nodata_share = nodata;

@@ -17,13 +17,14 @@ namespace vpe::gl {
 // fills in what it wants before each draw(); the renderer fills in the rest. core::Frame::colour stays empty then.
 struct TextureHandover {
   unsigned texture = 0;  // OpenGL's name; its storage is made by the renderer. 0: pixels are wanted
-  void* unused =
-      nullptr;  // GLsync, which is passed once the window no longer draws the texture; null: it does not
-  glm::ivec2 cells{0,
-                   0};  // ranges are wanted at their corners where the request wants rough ranges; 0: nowhere
+  // GLsync, which is passed once the window no longer draws the texture; null: it does not.
+  void* unused = nullptr;
+  // Ranges are wanted at the corners of cells where the request wants rough ranges; 0: nowhere.
+  glm::ivec2 cells{0, 0};
 
-  bool is_drawn = false;            // false: the image needs the CPU, and is in the frame
-  void* drawn = nullptr;            // GLsync, which is passed once the image is drawn; the caller deletes it
+  bool is_drawn = false;  // false: the image needs the CPU, and is in the frame
+  void* drawn =
+      nullptr;  // GLsync, which is passed once the image is drawn; the renderer's until the next draw()
   std::vector<float> range_m = {};  // as core::Frame::range_m, of the pixels of corners (TextureFinish::draw)
   std::size_t bytes = 0;            // of textures of the renderer's own, which only this way needs
 };

@@ -89,10 +89,7 @@ void SharedImages::place(ImageRequest& request, const ImageRequest& drawn, bool 
 bool SharedImages::take(const DrawnImage& drawn) {
   is_shown_ = drawn.is_in_texture;
   if (!is_shown_) return false;
-  if (drawn.drawn != nullptr) {
-    glWaitSync(static_cast<GLsync>(drawn.drawn), 0, GL_TIMEOUT_IGNORED);
-    glDeleteSync(static_cast<GLsync>(drawn.drawn));
-  }
+  if (drawn.drawn != nullptr) glWaitSync(static_cast<GLsync>(drawn.drawn), 0, GL_TIMEOUT_IGNORED);
   textures_[next_].set_stored(drawn.image.width, drawn.image.height);
   next_ = 1 - next_;
   ++count_;

@@ -36,7 +36,7 @@ class SharedImages {
   const std::string& why_not() const { return why_not_; }
   // Says in a request where it is drawn.
   void place(ImageRequest& request, const ImageRequest& drawn, bool is_recording);
-  // Takes an image, which is shown from now on. Returns false if it is pixels; then no texture of these is shown.
+  // Takes an image, before the next request, and shows it from now on. Returns false if it is pixels; then no texture of these is shown.
   bool take(const DrawnImage& drawn);
   // Returns the texture of the image that was taken last, or null.
   const Texture* shown() const;

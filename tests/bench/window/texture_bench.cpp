@@ -73,7 +73,6 @@ void compare(const std::shared_ptr<gl::Context>& context,
   const auto draw_texture = [&] {
     *handover = {.texture = drawn.name(), .cells = kCells};
     (void)renderer->draw(request);
-    if (handover->drawn != nullptr) glDeleteSync(static_cast<GLsync>(handover->drawn));
     glFinish();
   };
   Times pixels;

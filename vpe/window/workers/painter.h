@@ -74,7 +74,8 @@ struct DrawnImage {
   core::RgbImage image;  // with its margin; in stereo of another size than the view; empty after an error
   // The image is in the texture of the request, and `image` has its size but no pixels.
   bool is_in_texture = false;
-  void* drawn = nullptr;  // GLsync, which is passed once the texture is drawn; who takes the image deletes it
+  void* drawn =
+      nullptr;  // GLsync, which is passed once the texture is drawn; the painter's until the next request
   // Without its pixels. In stereo its figures are those of the left eye, and its certificate is that of the eye with the
   // larger bound.
   core::DrawResult result;
