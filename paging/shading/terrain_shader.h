@@ -40,6 +40,7 @@ constexpr bool shows_image(ColourSource s) {
 }
 
 struct ShadingParams;
+struct TexelBlock;
 // Returns whether colours show heights above the ground of PlanetFile::earlier().
 bool shows_difference(const ShadingParams& params);
 
@@ -134,8 +135,9 @@ class TerrainShader {
   // Returns the number of texture intervals over a tile beyond which the data has no more detail.
   int useful_intervals(const lod::TileKey& key, ColourSource colour_source) const;
 
-  // Colours the grid of a tile. `intervals` must be 2^k times a power of two (>= 1). Where a patch has changed a part of what
-  // a kept texture shows, makes that part alone; the texels are the same. Throws PlanetError.
+  // Colours the grid of a tile. `intervals` must be 2^k times a power of two: texels are posts of tiles below, or where it is
+  // less than 2^k, down to least_intervals(), of a tile above (texel_block.h). Where a patch has changed a part of what a kept
+  // texture shows, makes that part alone; the texels are the same. Throws PlanetError.
   ShadedTile shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const;
 
   // Computes one colour for each triangle of a tile's mesh, from its normal, the mean height of its corners,
@@ -262,6 +264,9 @@ class TerrainShader {
   void shade_changed(const lod::TileKey& key, const ShadingParams& params, const KeptTexture& kept,
                      const std::vector<BlockSource>& sources, ShadedTile& out, std::vector<bool>& nodata) const;
 
+  // Colours a texture of at most as many intervals as posts; `out` has its channels and intervals.
+  void shade_coarse(const lod::TileKey& key, const ShadingParams& params, ShadedTile& out) const;
+
   // Returns the deepest stored tile at or above `key`.
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
@@ -279,7 +284,8 @@ class TerrainShader {
   // positions.
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
                                      std::vector<glm::dvec3>& points) const;
-  void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,
+  // Colours a block, whose first texel is (x0, y0) of a texture of `side` texels a side.
+  void shade_block(const TexelBlock& block, int x0, int y0, int side, const ShadingParams& params,
                    ShadedTile& out) const;
 
   std::shared_ptr<const PlanetFile> planet_;

@@ -5,14 +5,12 @@
 
 #include "paging/shading/terrain_grid.h"
 #include "paging/shading/terrain_shader.h"
+#include "paging/shading/texel_block.h"
 #include "vpe/core/appearance/shading.h"
 
 namespace paging {
 
 namespace {
-
-// Textures of tiles above this level are resampled to even lines.
-constexpr int kFirstEvenTexture = 5;
 
 // Returns the number of blocks along a side of a texture.
 std::size_t blocks_along(int intervals, int block_intervals) {
@@ -124,7 +122,7 @@ void TerrainShader::shade_blocks(const lod::TileKey& key, const std::vector<bool
       const auto at = static_cast<std::size_t>(by * blocks + bx);
       if (!is_wanted[at]) continue;
       out.nodata = false;
-      shade_block({key.face, level, key.i * blocks + bx, key.j * blocks + by}, bx * n, by * n,
+      shade_block(whole_block({key.face, level, key.i * blocks + bx, key.j * blocks + by}, n), bx * n, by * n,
                   out.intervals + 1, params, out);
       nodata[at] = out.nodata;
     }
@@ -155,16 +153,34 @@ void TerrainShader::shade_changed(const lod::TileKey& key, const ShadingParams& 
   }
 }
 
+void TerrainShader::shade_coarse(const lod::TileKey& key, const ShadingParams& params, ShadedTile& out) const {
+  const int n = planet_->meta().tile.intervals();
+  TexelBlock block = coarse_block(key, out.intervals, n);
+  // However near the camera is, these textures are no finer than posts.
+  if (params.colour_source == ColourSource::kImageAtPosts && out.intervals == n) block.image = key;
+  // The posts above are those of neighbours too.
+  block.shows_nodata = planet_->has_nodata(key) || shows_difference(params);
+  out.texels.resize(texel_bytes(out));
+  shade_block(block, 0, 0, out.intervals + 1, params, out);
+  if (key.level >= kFirstEvenTexture) return;
+  std::vector<std::uint8_t> even(out.texels.size());
+  make_even(key, out.intervals, {true}, out, even);
+  out.texels = std::move(even);
+}
+
 ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const {
   const int n = planet_->meta().tile.intervals();
   ShadedTile out;
-  out.intervals = n;
-  while (out.intervals < intervals) out.intervals *= 2;
+  out.intervals = intervals;
   out.nodata_image = shows_image(params.colour_source);
   // Light alone takes a quarter of the bytes, but has no alpha for nodata.
   if (params.colour_source == ColourSource::kPlain && params.lit && !planet_->has_nodata(key)) {
     out.channels = 1;
     out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);
+  }
+  if (intervals <= n) {
+    shade_coarse(key, params, out);
+    return out;
   }
   const int blocks = out.intervals / n;
   std::vector<bool> nodata(static_cast<std::size_t>(blocks) * static_cast<std::size_t>(blocks));

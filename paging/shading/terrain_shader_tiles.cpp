@@ -4,6 +4,7 @@
 
 #include "paging/shading/terrain_grid.h"
 #include "paging/shading/terrain_shader.h"
+#include "paging/shading/texel_block.h"
 #include "vpe/core/appearance/shading.h"
 
 namespace paging {
@@ -14,57 +15,60 @@ bool needs_vertical(ColourSource s) { return s == ColourSource::kSlope || s == C
 
 }  // namespace
 
-void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
-                                const ShadingParams& params, ShadedTile& out) const {
+void TerrainShader::shade_block(const TexelBlock& block, int x0, int y0, int side, const ShadingParams& params,
+                                ShadedTile& out) const {
   const int n = planet_->meta().tile.intervals();
-  const lod::TileKey stored = deepest(block);
+  const lod::TileKey& tile = block.tile;
+  const lod::TileKey stored = deepest(tile);
   const std::shared_ptr<const NormalTile> ground = normals(stored, params);
-  const ImageBlock image_block = this->image_block(block, params);
+  const ImageBlock image_block = this->image_block(block.image, params);
   // Where this block lies inside what is stored, in steps of the block's own texels.
-  const auto offset = [&](std::int32_t index, const lod::TileKey& outer) {
-    const int levels = block.level - outer.level;
-    return (index - ((index >> levels) << levels)) * n;
+  const auto offset = [&](std::int32_t index, int first, const lod::TileKey& outer) {
+    const int levels = tile.level - outer.level;
+    return (index - ((index >> levels) << levels)) * n + first;
   };
-  const int ground_steps = n << (block.level - stored.level);
-  const int gx = offset(block.i, stored);
-  const int gy = offset(block.j, stored);
-  const int image_steps = image_block.tile ? n << (block.level - image_block.key.level) : 1;
-  const int px = image_block.tile ? offset(block.i, image_block.key) : 0;
-  const int py = image_block.tile ? offset(block.j, image_block.key) : 0;
-  const bool direct = stored == block;
+  const int ground_steps = n << (tile.level - stored.level);
+  const int gx = offset(tile.i, block.first_x, stored);
+  const int gy = offset(tile.j, block.first_y, stored);
+  const int image_steps = image_block.tile ? n << (tile.level - image_block.key.level) : 1;
+  const int px = image_block.tile ? offset(tile.i, block.first_x, image_block.key) : 0;
+  const int py = image_block.tile ? offset(tile.j, block.first_y, image_block.key) : 0;
+  const bool direct = stored == tile;
   const bool needs_up = needs_vertical(params.colour_source) || needs_vertical(params.hue);
-  const lod::GridLines lines = needs_up ? lod::grid_lines(block, n) : lod::GridLines{};
+  const lod::GridLines lines = needs_up ? lod::grid_lines(tile, n) : lod::GridLines{};
 
   const auto ground_side = static_cast<std::size_t>(ground->side);
   const auto channels = static_cast<std::size_t>(out.channels);
   // The same in all rows.
   std::vector<GridPosition> ground_columns;
   std::vector<GridPosition> image_columns;
-  for (int x = 0; x <= n; ++x) {
+  for (int x = 0; x <= block.intervals; ++x) {
     ground_columns.push_back(grid_position(gx, x, ground_steps, ground->side - 1));
     if (image_block.tile) image_columns.push_back(grid_position(px, x, image_steps, kImageIntervals));
   }
   Ground at;
-  for (int y = 0; y <= n; ++y) {
+  for (int y = 0; y <= block.intervals; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
     const GridPosition pyp = grid_position(py, y, image_steps, kImageIntervals);
     std::uint8_t* texel =
         &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
                                 static_cast<std::size_t>(x0))];
-    for (int x = 0; x <= n; ++x, texel += channels) {
+    for (int x = 0; x <= block.intervals; ++x, texel += channels) {
       const GridPosition& gxp = ground_columns[static_cast<std::size_t>(x)];
       at.height_m =
           bilinear<float>(gxp, gyp, ground_side, [&](std::size_t k) { return ground->posts[k].height_m; });
       at.normal =
-          direct ? ground->posts[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)].normal
-                 : bilinear<glm::vec3>(gxp, gyp, ground_side,
-                                       [&](std::size_t k) { return ground->posts[k].normal; });
+          direct
+              ? ground->posts[static_cast<std::size_t>(gy + y) * ground_side + static_cast<std::size_t>(gx + x)]
+                    .normal
+              : bilinear<glm::vec3>(gxp, gyp, ground_side,
+                                    [&](std::size_t k) { return ground->posts[k].normal; });
       if (!ground->sees_sun.empty())
         at.sun = bilinear<float>(gxp, gyp, ground_side,
                                  [&](std::size_t k) { return static_cast<float>(ground->sees_sun[k]); });
       if (needs_up)
-        at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
-                                      lines.v[static_cast<std::size_t>(y)]);
+        at.up = mars::chart_direction(tile.face, lines.u[static_cast<std::size_t>(block.first_x + x)],
+                                      lines.v[static_cast<std::size_t>(block.first_y + y)]);
       if (image_block.tile) {
         const GridPosition& pxp = image_columns[static_cast<std::size_t>(x)];
         at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
@@ -77,7 +81,7 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
                                                 at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
         continue;
       }
-      const bool has_data = !is_nodata(ground->nodata, gxp, gyp, ground_side);
+      const bool has_data = !block.shows_nodata || !is_nodata(ground->nodata, gxp, gyp, ground_side);
       const glm::vec3 c(has_data || !out.nodata_image ? colour(at, params) : at.image);
       texel[0] = to_byte(c.x);
       texel[1] = to_byte(c.y);

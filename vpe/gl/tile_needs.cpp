@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "paging/shading/texel_block.h"
 #include "vpe/base/mutation.h"
 
 namespace vpe::gl {
@@ -27,6 +28,27 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
     return static_cast<int>(at - line.begin());
   };
   return nearest(lines.v, camera.v) * (intervals + 1) + nearest(lines.u, camera.u);
+}
+
+// Returns the intervals of the texture of a tile that is coloured at posts. Finer than posts it has three quarters of a texel a
+// pixel at the tile's nearest point; coarser it has a texel a pixel, as colours of rays have (TerrainShader::colour_at()).
+int grid_intervals(const lod::SelectedTile& tile, double focal, const paging::PlanetFile& planet,
+                   const TerrainShader& terrain_shader, const TileMaterial& material) {
+  const double side_m = lod::nominal_side_m(tile.key.level, planet.radius_m());
+  const double side_px = side_m * focal / std::max(tile.min_distance_m, 1e-3 * side_m);
+  const paging::ColourSource source = material.shading.colour_source;
+  const int most = std::min(kLargestTexture, terrain_shader.useful_intervals(tile.key, source));
+  const int posts = planet.meta().tile.intervals();
+  int intervals = std::max(kSmallestTexture, posts);
+  // Colours of posts are not made finer than posts.
+  if (source == paging::ColourSource::kImageAtPosts) intervals = std::min(intervals, most);
+  while (intervals < 0.75 * side_px && intervals < most) intervals *= 2;
+  // Nodata is shown as finely as posts are.
+  if (planet.has_nodata(tile.key) || paging::shows_difference(material.shading)) return intervals;
+  const int least = paging::least_intervals(tile.key, posts);
+  const double coarsest = tile.key.level < paging::kFirstEvenTexture ? 2 * side_px : side_px;
+  while (intervals / 2 >= coarsest && intervals > least) intervals /= 2;
+  return intervals;
 }
 
 // Takes the light out of the parameters of textures. What is not used has its default.
@@ -95,14 +117,7 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
     } else if (options.material.shading.flat) {
       need.texture = facet_texture(tile.variant);
     } else {
-      const double side = lod::nominal_side_m(tile.key.level, planet.radius_m());
-      const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
-      const int most = std::min(
-          kLargestTexture, terrain_shader.useful_intervals(tile.key, options.material.shading.colour_source));
-      // Colours of posts are not made finer than posts.
-      const bool at_posts = options.material.shading.colour_source == paging::ColourSource::kImageAtPosts;
-      need.texture = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
-      while (need.texture < wanted && need.texture < most) need.texture *= 2;
+      need.texture = grid_intervals(tile, focal, planet, terrain_shader, options.material);
     }
     needs.push_back(need);
   }

@@ -49,7 +49,8 @@ TileMaterial material(const core::Appearance& appearance, const glm::dvec3& sun,
 // suns cannot be mixed.
 std::optional<glm::dvec3> shadow_sun(const TileMaterial& material);
 
-inline constexpr int kSmallestTexture = 128;  // intervals
+// Intervals of the smallest texture that is not coarser than posts, if these are no finer.
+inline constexpr int kSmallestTexture = 128;
 
 // Returns true if a tile needs a texture.
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material);
@@ -67,8 +68,8 @@ struct NeedOptions {
   std::size_t texture_bytes = 0;  // for the textures of all the tiles
 };
 
-// Returns the need of each tile. Textures have one texel a pixel at the tile's nearest point, unless the data
-// or the memory allows less.
+// Returns the need of each tile. Textures have about one texel a pixel at the tile's nearest point, unless the data
+// or the memory allows less, so that tiles that are small in the image do not flicker.
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
                                  const paging::PlanetFile& planet, const TerrainShader& terrain_shader,
                                  const NeedOptions& options);

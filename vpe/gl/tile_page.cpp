@@ -30,14 +30,17 @@ void PageLoader::with_mesh(const lod::TileKey& tile, int variant, double exagger
   visit(packed.mesh, std::span<const double>(heights));
 }
 
-// Finer texels need the posts of tiles below this one. Where these cannot be read, coarser texels serve.
+// Finer texels need the posts of tiles below this one, coarser ones those of a tile above. Where these cannot be read, texels
+// nearer to the tile's own posts serve.
 ShadedTile PageLoader::shade(const PageKey& key, std::string& coarse_because) const {
-  for (int intervals = key.detail;; intervals /= 2) {
+  const int posts = planet_->meta().tile.intervals();
+  for (int intervals = key.detail;;) {
     try {
       return terrain_shader_->shade(key.tile, intervals, *key.shading);
     } catch (const paging::PlanetError& e) {
-      if (intervals / 2 < planet_->meta().tile.intervals()) throw;
-      coarse_because = e.what();
+      if (intervals == posts) throw;
+      if (intervals > posts) coarse_because = e.what();
+      intervals = intervals > posts ? intervals / 2 : posts;
     }
   }
 }

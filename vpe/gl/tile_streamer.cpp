@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <new>
 
+#include "paging/shading/texel_block.h"
 #include "vpe/base/parallel.h"
 
 namespace vpe::gl {
@@ -97,9 +98,9 @@ void TileStreamer::change_planet(std::shared_ptr<const paging::PlanetFile> plane
   memory_ = bytes_for_tiles(options_.memory_bytes, planet_->tree().bytes());
   terrain_shader_->change_planet(planet_, share(kTerrainShaderShare));
   loader_ = PageLoader(planet_, terrain_shader_);
-  const auto is_other_texture = [&](const lod::TileKey& tile, const ShadingParams& shading) {
-    return paging::shading_version(*before, tile, paging::MadeOf::kArea, shading) !=
-           paging::shading_version(*planet_, tile, paging::MadeOf::kArea, shading);
+  const auto is_other_texture = [&](const lod::TileKey& tile, const TextureDetail& t) {
+    return paging::texture_version(*before, tile, t.texture, *t.shading) !=
+           paging::texture_version(*planet_, tile, t.texture, *t.shading);
   };
   const auto is_other_tile = [&](const lod::TileKey& tile) {
     return planet_->tree().find(tile) == nullptr || before->version(tile) != planet_->version(tile);
@@ -114,7 +115,7 @@ void TileStreamer::change_planet(std::shared_ptr<const paging::PlanetFile> plane
     return is_other_tile(tile) || (m.normals && has_other_normals(tile));
   });
   textures_.drop([&](const lod::TileKey& tile, const TextureDetail& t, std::uint64_t) {
-    return is_other_tile(tile) || is_other_texture(tile, *t.shading);
+    return is_other_tile(tile) || is_other_texture(tile, t);
   });
   std::erase_if(ground_, [&](const auto& g) { return is_other_tile(g.first); });
   failures_.clear();
