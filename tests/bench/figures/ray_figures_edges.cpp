@@ -100,7 +100,7 @@ class ColumnEdges {
       const auto line = reader.gather(k);
       add(k, first_lane(reader.height_on(line)), family, true);
       if (k == last) break;
-      const auto edge = reader.between(k, line, reader.gather(k + 1));
+      const auto edge = reader.between(reader.line_number(k), line, reader.gather(k + 1));
       const bool straight = !hwy::HWY_NAMESPACE::AllFalse(d, edge.other);
       add(first_lane(edge.x), first_lane(edge.height), family_between(family, straight), false);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 
 namespace vpe::voxel {
@@ -89,7 +90,17 @@ void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, 
       walk.cast(azimuth.data(), batch.rows, scratch->tiles, group);
     }
     const int begin_row = static_cast<int>(lowest);
-    for (int end = static_cast<int>(highest); end > begin_row; end -= kBlockRows) {
+    const int end_row = static_cast<int>(highest);
+    float ground = lowest;  // all rows from here on are sky
+    for (int g = 0; g < groups; ++g) {
+      const ColumnGroup& group = scratch->groups[static_cast<std::size_t>(g)];
+      ground = std::max(ground, *std::max_element(group.row, group.row + group.columns));
+    }
+    const int sky_row = std::clamp(static_cast<int>(ground), begin_row, end_row);
+    std::fill_n(scratch->block[0].lane, task_columns, std::numeric_limits<float>::infinity());
+    copy_rows(scratch->block[0].lane, 0, batch.out + sky_row * batch.stride + begin, batch.stride, columns,
+              end_row - sky_row, batch.stream);
+    for (int end = sky_row; end > begin_row; end -= kBlockRows) {
       const int row = std::max(begin_row, end - kBlockRows);
       const int rows = end - row;
       for (int g = 0; g < groups; ++g)

@@ -85,6 +85,7 @@ class GroupWalk : public HeightGridSource {
       side_[0] = -side_[0];
       side_[1] = -side_[1];
     }
+    middle_ = middle;
     wedge_ = glm::dot(first, last) > 0.5 && glm::dot(first, middle) > 0.5;
   }
 
@@ -99,6 +100,15 @@ class GroupWalk : public HeightGridSource {
       if (n.x * u + n.y * v + n.z + std::abs(n.x) * du + std::abs(n.y) * dv < -kSlack) return true;
     }
     return false;
+  }
+
+  // Returns true if no column meets the cell in front of the camera. Points in front of any column of the wedge are in front of the
+  // middle one.
+  bool behind(const Cell& cell) const {
+    const double u = middle_.x > 0 ? cell.u1 : cell.u0;
+    const double v = middle_.y > 0 ? cell.v1 : cell.v0;
+    constexpr double kSlack = 1e-12;
+    return wedge_ && middle_.x * u + middle_.y * v + middle_.z < -kSlack;
   }
 
   // Visits the quarters of a cell from near to far: at each middle line the side of the camera's foot is
@@ -137,7 +147,7 @@ class GroupWalk : public HeightGridSource {
 
   // Visits grids [i, i + size) x [j, j + size) of the current tile.
   void visit_grids(const Cell& cell, int i, int j, int size, int per_side) {
-    if (done() || hidden(tile_) || outside(cell)) return;
+    if (done() || hidden(tile_) || outside(cell) || behind(cell)) return;
     if (size == 1) {
       grid_i_ = i;
       grid_j_ = j;
@@ -168,6 +178,7 @@ class GroupWalk : public HeightGridSource {
   ColumnGroup& group_;
   glm::dvec3 up_{0, 0, 1};
   glm::dvec3 side_[2]{};
+  glm::dvec3 middle_{};
   bool wedge_ = false;
   lod::TileTree::Index tile_ = 0;
   lod::TileTree::Index posts_of_ = 0;

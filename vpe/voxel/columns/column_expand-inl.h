@@ -156,6 +156,12 @@ void copy_rows_kernel(const float* from, std::ptrdiff_t from_stride, float* to, 
         to[x] = from[x];
         ++x;
       }
+      for (; x + 4 * lanes <= columns; x += 4 * lanes) {
+        hn::Stream(hn::LoadU(d, from + x), d, to + x);
+        hn::Stream(hn::LoadU(d, from + x + lanes), d, to + x + lanes);
+        hn::Stream(hn::LoadU(d, from + x + 2 * lanes), d, to + x + 2 * lanes);
+        hn::Stream(hn::LoadU(d, from + x + 3 * lanes), d, to + x + 3 * lanes);
+      }
       for (; x + lanes <= columns; x += lanes) hn::Stream(hn::LoadU(d, from + x), d, to + x);
     }
     for (; x + lanes <= columns; x += lanes) hn::StoreU(hn::LoadU(d, from + x), d, to + x);

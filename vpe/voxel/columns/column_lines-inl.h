@@ -13,6 +13,7 @@
 // clang-format on
 
 #include <algorithm>
+#include <cstdint>
 
 #include "vpe/voxel/columns/columns.h"
 
@@ -48,7 +49,9 @@ class PathReader {
   int intervals() const { return n_; }
   const T* maxima(int block) const { return lines_.maxima(block); }
 
-  V position_at(int k) const { return hn::MulAdd(position1_, hn::Set(D(), static_cast<T>(k)), position0_); }
+  V position_at(int k) const { return position_at(line_number(k)); }
+  V position_at(V k) const { return hn::MulAdd(position1_, k, position0_); }
+  static V line_number(int k) { return hn::Set(D(), static_cast<T>(k)); }
   T first_position(int k) const {
     return family_ == LineFamily::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
   }
@@ -66,7 +69,8 @@ class PathReader {
   };
 
   // Reads a line at any positions. Indices are clamped to the line and one post beside it.
-  Line gather(int k) const {
+  Line gather(int k) const { return gather(line_number(k), lines_.line(k)); }
+  Line gather(V k, const T* at) const {
     const D d;
     const DI di;
     Line line;
@@ -75,7 +79,22 @@ class PathReader {
     line.part = hn::Sub(y, line.whole);
     const V safe = hn::Min(hn::Max(line.whole, hn::Set(d, T(-1))), hn::Set(d, static_cast<T>(n_)));
     const VI index = hn::ConvertTo(di, safe);
-    const T* at = lines_.line(k);
+#if HWY_TARGET == HWY_AVX2
+    if constexpr (sizeof(T) == 4) {
+      // Both posts of a lane by one load.
+      alignas(32) std::int32_t first[8];
+      hn::Store(index, di, first);
+      const auto two = [&](int lane) {
+        __m128 out = _mm_loadl_pi(_mm_undefined_ps(), reinterpret_cast<const __m64*>(at + first[lane]));
+        return _mm_loadh_pi(out, reinterpret_cast<const __m64*>(at + first[lane + 1]));
+      };
+      const __m256 a = _mm256_insertf128_ps(_mm256_castps128_ps256(two(0)), two(4), 1);
+      const __m256 b = _mm256_insertf128_ps(_mm256_castps128_ps256(two(2)), two(6), 1);
+      line.low = V{_mm256_shuffle_ps(a, b, 0x88)};
+      line.high = V{_mm256_shuffle_ps(a, b, 0xdd)};
+      return line;
+    }
+#endif
     line.low = hn::GatherIndex(d, at, index);
     line.high = hn::GatherIndex(d, at + 1, index);
     return line;
@@ -91,15 +110,14 @@ class PathReader {
   static constexpr int kWideWidth = 60;
 #endif
   template <Reach kReach>
-  Line window(int k, T from) const {
+  Line window(V k, int base, const T* posts) const {
     const D d;
     const DI di;
     Line line;
     const V y = position_at(k);
     line.whole = hn::Floor(y);
     line.part = hn::Sub(y, line.whole);
-    const int base = std::max(static_cast<int>(from) - 1, -1);
-    const T* at = lines_.line(k) + base;
+    const T* at = posts + base;
 #if HWY_TARGET <= HWY_AVX3
     if constexpr (sizeof(T) == 4) {
       const __m512 a = _mm512_loadu_ps(at);
@@ -143,14 +161,20 @@ class PathReader {
     return line;
   }
 
+  // Returns where the window begins whose lowest position is `from`.
+  static int window_base(T from) { return std::max(static_cast<int>(from) - 1, -1); }
+
+  // Reads a line by a window that begins at post `base`, or at any positions. `posts` is line(k).
   template <Reach kReach>
-  Line read(int k, T from) const {
+  Line read(V k, int base, const T* posts) const {
     if constexpr (kReach == Reach::kAny) {
-      return gather(k);
+      return gather(k, posts);
     } else {
-      return window<kReach>(k, from);
+      return window<kReach>(k, base, posts);
     }
   }
+  const T* posts(int k) const { return lines_.line(k); }
+  int side() const { return lines_.side; }
 
   // Describes where a path crosses the one edge between two neighbouring lines.
   struct Crossing {
@@ -159,7 +183,7 @@ class PathReader {
     M other;  // an edge along the lines' normal, not a diagonal of the family's cells
   };
   // Returns the crossing between line k (`lower`) and line k + 1 (`upper`).
-  Crossing between(int k, const Line& lower, const Line& upper) const {
+  Crossing between(V k, const Line& lower, const Line& upper) const {
     const D d;
     const V one = hn::Set(d, T(1));
     Crossing c;
@@ -170,7 +194,7 @@ class PathReader {
     const V a = hn::IfThenElse(c.other, lower.high, lower.low);
     const V b = hn::IfThenElse(c.other, upper.low, upper.high);
     c.height = hn::MulAdd(s, hn::Sub(b, a), a);
-    c.x = hn::Add(hn::Set(d, static_cast<T>(k)), s);
+    c.x = hn::Add(k, s);
     return c;
   }
 

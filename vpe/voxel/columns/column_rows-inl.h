@@ -60,6 +60,21 @@ class RowModel {
     }
   }
 
+  // Returns the model of other lanes, if lanes differ: of_lane(V) is a vector with the values that they have.
+  template <class OfLane>
+  decltype(auto) with_lanes([[maybe_unused]] OfLane&& of_lane) const {
+    if constexpr (kKind == RowKind::kSector) {
+      RowModel out = *this;
+      out.a0_ = of_lane(a0_);
+      out.a1_ = of_lane(a1_);
+      out.b0_ = of_lane(b0_);
+      out.b1_ = of_lane(b1_);
+      return out;
+    } else {
+      return static_cast<const RowModel&>(*this);
+    }
+  }
+
   // Returns the slopes of rows, whole numbers in [0, count].
   V slope(V row) const {
     const D d;

@@ -68,28 +68,24 @@ void scatter(D d, float* to, float* to_too, int lane0, hn::Mask<D> lanes, hn::Ve
 }
 
 #if HWY_TARGET == HWY_AVX2
-// Stores a start and a gain for each lane at its row, all lanes without a branch: 0 for those of no `lanes`, whose values there
-// are 0. Requires that `gain` is 0 for them.
-inline void scatter_pairs(hn::CappedTag<float, kMaxLanes> d, float* to,
-                          hn::Mask<hn::CappedTag<float, kMaxLanes>> lanes,
-                          hn::Vec<hn::CappedTag<float, kMaxLanes>> at_row,
+// Stores a start and a gain for each of eight columns, `lane`, at its row.
+inline void scatter_pairs(float* to, __m256i lane, hn::Vec<hn::CappedTag<float, kMaxLanes>> at_row,
                           hn::Vec<hn::CappedTag<float, kMaxLanes>> start,
                           hn::Vec<hn::CappedTag<float, kMaxLanes>> gain) {
-  alignas(32) std::int32_t index[8];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(index), _mm256_slli_epi32(_mm256_cvttps_epi32(at_row.raw), 4));
-  const __m256 some = hn::IfThenElseZero(lanes, start).raw;
-  // Lanes 0, 1, 4, 5 and 2, 3, 6, 7.
-  const __m256 a = _mm256_unpacklo_ps(some, gain.raw);
-  const __m256 b = _mm256_unpackhi_ps(some, gain.raw);
-  const auto put = [&](int lane, __m128 two) {
-    _mm_storel_pi(reinterpret_cast<__m64*>(to + index[lane] + 2 * lane), two);
-    _mm_storeh_pi(reinterpret_cast<__m64*>(to + index[lane + 1] + 2 * lane + 2), two);
+  alignas(32) std::uint32_t index[8];
+  const __m256i row = _mm256_slli_epi32(_mm256_cvttps_epi32(at_row.raw), 4);
+  _mm256_store_si256(reinterpret_cast<__m256i*>(index), _mm256_add_epi32(row, _mm256_add_epi32(lane, lane)));
+  // Values 0, 1, 4, 5 and 2, 3, 6, 7.
+  const __m256 a = _mm256_unpacklo_ps(start.raw, gain.raw);
+  const __m256 b = _mm256_unpackhi_ps(start.raw, gain.raw);
+  const auto put = [&](int k, __m128 two) {
+    _mm_storel_pi(reinterpret_cast<__m64*>(to + index[k]), two);
+    _mm_storeh_pi(reinterpret_cast<__m64*>(to + index[k + 1]), two);
   };
   put(0, _mm256_castps256_ps128(a));
   put(2, _mm256_castps256_ps128(b));
   put(4, _mm256_extractf128_ps(a, 1));
   put(6, _mm256_extractf128_ps(b, 1));
-  (void)d;
 }
 #endif
 

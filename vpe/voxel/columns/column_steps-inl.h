@@ -19,7 +19,7 @@
 #include "vpe/voxel/columns/column_lines-inl.h"
 #include "vpe/voxel/columns/column_paths-inl.h"
 #include "vpe/voxel/columns/column_rows-inl.h"
-#include "vpe/voxel/columns/column_scatter-inl.h"
+#include "vpe/voxel/columns/column_runs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -42,17 +42,20 @@ class HorizonWalk {
       : lane0_(lane0),
         reader_(lines, family, intervals, load(paths.position0), load(paths.position1)),
         group_(group),
-        model_(rows, group, lane0) {
+        model_(rows, group, lane0),
+        terms_{load(paths.sigma0),
+               load(paths.sigma1),
+               load(paths.base0),
+               load(paths.base1),
+               load(paths.depth0),
+               load(paths.depth1),
+               hn::Set(D(), static_cast<T>(1.0 / camera.distance_m))},
+        runs_(terms_, model_, rows, group, lane0) {
     const D d;
-    sigma0_ = load(paths.sigma0);
-    sigma1_ = load(paths.sigma1);
-    base0_ = load(paths.base0);
-    base1_ = load(paths.base1);
-    depth0_ = load(paths.depth0);
-    depth1_ = load(paths.depth1);
-    per_distance_ = hn::Set(d, static_cast<T>(1.0 / camera.distance_m));
     row_ = load(group.row);
     end_ = load(group.row_end);
+    from_ = load(paths.from);
+    to_ = load(paths.to);
     active_ = hn::Eq(load(paths.kind), hn::Set(d, static_cast<T>(kind)));
     started_ = hn::MaskFromVec(hn::Zero(d));
     last_x_ = hn::Zero(d);
@@ -84,38 +87,20 @@ class HorizonWalk {
     for (int k = first; k != last && any();) {
       const int next = up ? std::min(last, (floor_block(k) + 1) * kBlockLines)
                           : std::max(last, floor_block(k - 1) * kBlockLines);
-      const int low = std::min(k, next);
-      const int high = std::max(k, next);
-      if (hidden(low, high)) {
+      if (hidden(std::min(k, next), std::max(k, next))) {
         fresh = true;
       } else {
         if (fresh) enter(k);
         fresh = false;
-        const bool all = all_inside(low, high);
-        const Reach reach = all ? reach_of_all() : reach_of_some();
-        if (reach == Reach::kNear) {
-          walk_block<Reach::kNear>(up, all, k, next);
-        } else if (reach == Reach::kWide) {
-          walk_block<Reach::kWide>(up, all, k, next);
-        } else {
-          walk_block<Reach::kAny>(up, false, k, next);
-        }
+        up ? walk_block<true>(k, next) : walk_block<false>(k, next);
       }
       k = next;
     }
   }
 
-  template <Reach kReach>
-  void walk_block(bool up, bool all, int first, int last) {
-    if (kReach != Reach::kAny && all) {
-      up ? step_all<true, kReach>(first, last) : step_all<false, kReach>(first, last);
-    } else {
-      up ? step_masked<true, kReach>(first, last) : step_masked<false, kReach>(first, last);
-    }
-  }
-
-  // Writes the lanes' next rows back to the group.
-  void store() const {
+  // Writes the lanes' runs and next rows to the group.
+  void store() {
+    runs_.finish();
     alignas(64) T rows[kMaxLanes];
     hn::Store(row_, D(), rows);
     for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
@@ -133,14 +118,59 @@ class HorizonWalk {
     return hn::Load(D(), values);
   }
 
+  // Walks a block whose extents are known: lanes that enter or leave it make its ends slower, not its middle.
+  template <bool kUp>
+  void walk_block(int first, int last) {
+    if (all_inside(std::min(first, last), std::max(first, last))) return step_as<kUp, true>(first, last);
+    const D d;
+    const V far = hn::Set(d, T(1e30));
+    // A lane has started two lines after it enters.
+    const T low = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(alive_, from_, hn::Neg(far))));
+    const T high = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive_, to_, far)));
+    const auto bound = [&](T line) {
+      return static_cast<int>(
+          std::clamp(line, static_cast<T>(std::min(first, last)), static_cast<T>(std::max(first, last))));
+    };
+    const int begin = bound(kUp ? low + T(2) : high - T(1));
+    const int end = bound(kUp ? high : low + T(1));
+    if ((kUp ? end - begin : begin - end) < kShortest) return step_as<kUp, false>(first, last);
+    if (begin != first) step_part<kUp>(first, begin);
+    step_part<kUp>(begin, end);
+    if (end != last) step_part<kUp>(end, last);
+  }
+  static constexpr int kShortest = 3;
+
+  // Walks a part of a block.
+  template <bool kUp>
+  void step_part(int first, int last) {
+    if (!any()) return;
+    const int low = std::min(first, last);
+    const int high = std::max(first, last);
+    at_low_ = extent(reader_.position_at(low));
+    at_high_ = extent(reader_.position_at(high));
+    all_inside(low, high) ? step_as<kUp, true>(first, last) : step_as<kUp, false>(first, last);
+  }
+
+  template <bool kUp, bool kAll>
+  void step_as(int first, int last) {
+    switch (kAll ? reach_of_all() : reach_of_some()) {
+      case Reach::kNear:
+        return kAll ? step_all<kUp, Reach::kNear>(first, last) : step_masked<kUp, Reach::kNear>(first, last);
+      case Reach::kWide:
+        return kAll ? step_all<kUp, Reach::kWide>(first, last) : step_masked<kUp, Reach::kWide>(first, last);
+      case Reach::kAny:
+        return kAll ? step_all<kUp, Reach::kAny>(first, last) : step_masked<kUp, Reach::kAny>(first, last);
+    }
+  }
+
   static int floor_block(int k) { return k >= 0 ? k / kBlockLines : -((kBlockLines - 1 - k) / kBlockLines); }
 
   // Subtracts the line z = slope sigma of the next row from the paths' heights, and updates which lanes are
   // alive.
   void update_slope() {
     slope_ = model_.slope(row_);
-    base_s0_ = hn::NegMulAdd(slope_, sigma0_, base0_);
-    base_s1_ = hn::NegMulAdd(slope_, sigma1_, base1_);
+    base_s0_ = hn::NegMulAdd(slope_, terms_.sigma0, terms_.base0);
+    base_s1_ = hn::NegMulAdd(slope_, terms_.sigma1, terms_.base1);
     alive_ = hn::And(active_, hn::Lt(row_, end_));
   }
 
@@ -175,7 +205,7 @@ class HorizonWalk {
     return hn::AllFalse(d, hn::And(alive_, hn::Ge(top, hn::Zero(d))));
   }
 
-  M in_front(V x) const { return hn::Gt(hn::MulAdd(sigma1_, x, sigma0_), hn::Zero(D())); }
+  M in_front(V x) const { return hn::Gt(hn::MulAdd(terms_.sigma1, x, terms_.sigma0), hn::Zero(D())); }
 
   // Returns true if all lanes that are alive have started and are inside the grid, in front of the camera, at
   // both lines.
@@ -203,7 +233,7 @@ class HorizonWalk {
     const D d;
     const V rest = hn::Add(height, rest_at(x));
     const M reached = hn::And(hn::And(lanes, alive_), hn::Ge(rest, hn::Zero(d)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, x, height, rest);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, {x, height, last_x_, last_h_});
   }
 
   // Starts the lanes that are on line k, after hidden blocks or at the border of the grid.
@@ -233,15 +263,18 @@ class HorizonWalk {
   // Returns the reach when lanes enter and leave, so that one window serves the whole block; sets its start.
   Reach reach_of_some() {
     const T last = static_cast<T>(reader_.intervals());
-    from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
-    return reach_for(std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - from_);
+    window_from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
+    return reach_for(std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - window_from_);
   }
 
   // Walks a block in which lanes may enter or leave the grid.
   template <bool kUp, Reach kReach>
   void step_masked(int first, int last) {
     const D d;
-    const auto read = [&](int k) { return reader_.template read<kReach>(k, from_); };
+    const int base = PathReader<D>::window_base(window_from_);
+    const auto read = [&](int k) {
+      return reader_.template read<kReach>(reader_.line_number(k), base, reader_.posts(k));
+    };
     typename PathReader<D>::Line line = read(first);
     for (int k = first; k != last; k += kUp ? 1 : -1) {
       const int next_k = kUp ? k + 1 : k - 1;
@@ -250,7 +283,7 @@ class HorizonWalk {
       const int low_k = kUp ? k : next_k;
       const auto& lower = kUp ? line : next;
       const auto& upper = kUp ? next : line;
-      const auto c = reader_.between(low_k, lower, upper);
+      const auto c = reader_.between(reader_.line_number(low_k), lower, upper);
       // Both ends of the edge must be posts of this grid.
       const V one = hn::Set(d, T(1));
       const V low_post = hn::IfThenElse(c.other, hn::Add(lower.whole, one), lower.whole);
@@ -285,101 +318,95 @@ class HorizonWalk {
     last_h_ = hn::IfThenElse(lanes, height, last_h_);
   }
 
-  // Walks a block that all lanes cross.
+  // Walks a block, or a part of it, that all lanes cross.
   template <bool kUp, Reach kReach>
   void step_all(int first, int last) {
     const D d;
     const V zero = hn::Zero(d);
-    const T rate = (at_high_.low - at_low_.low) / static_cast<T>(std::abs(last - first));
-    const int low_end = std::min(first, last);
-    const auto from = [&](int k) { return at_low_.low + rate * static_cast<T>(k - low_end); };
-    typename PathReader<D>::Line line = reader_.template read<kReach>(first, from(first));
-    for (int k = first; k != last; k += kUp ? 1 : -1) {
-      const int next_k = kUp ? k + 1 : k - 1;
-
-      const typename PathReader<D>::Line next = reader_.template read<kReach>(next_k, from(next_k));
-      const auto c = reader_.between(kUp ? k : next_k, kUp ? line : next, kUp ? next : line);
-      const V x = hn::Set(d, static_cast<T>(next_k));
+    constexpr int kStep = kUp ? 1 : -1;
+    // The lowest position is affine between both ends, or higher. It is kept with a fraction of 16 bits, a little too high, as
+    // windows begin a post earlier.
+    constexpr T kOne = T(65536);
+    const int rate =
+        static_cast<int>((at_high_.low - at_low_.low) * kOne / static_cast<T>(std::abs(last - first)));
+    int from = static_cast<int>((kUp ? at_low_.low : at_high_.low) * kOne) + 2 * kBlockLines;
+    const std::ptrdiff_t step = kUp ? reader_.side() : -reader_.side();
+    const int step_from = kUp ? rate : -rate;
+    const T* const line_0 = reader_.posts(0);
+    // Line 0 of diagonals does not follow on line -1 in memory.
+    const T* posts = reader_.posts(std::min(first, last)) + (kUp ? 0 : (last - first) * step);
+    const auto read = [&](V x, int k) {
+      return reader_.template read<kReach>(x, (from >> 16) - 1, k == 0 ? line_0 : posts);
+    };
+    V last_x = hn::Set(d, static_cast<T>(first));
+    // Copies of members, which stay in registers.
+    V base_s0 = base_s0_;
+    V base_s1 = base_s1_;
+    M alive = alive_;
+    V last_h = last_h_;
+    V last_event_x = last_x_;
+    typename PathReader<D>::Line line = read(last_x, first);
+    for (int k = first + kStep; k != last + kStep; k += kStep) {
+      from += step_from;
+      posts += step;
+      const V x = hn::Add(last_x, hn::Set(d, T(kStep)));
+      const typename PathReader<D>::Line next = read(x, k);
+      const auto c = reader_.between(kUp ? last_x : x, kUp ? line : next, kUp ? next : line);
       const V height = reader_.height_on(next);
-      const V rest_c = hn::Add(c.height, rest_at(c.x));
-      const V rest = hn::Add(height, rest_at(x));
-      const M reached = hn::And(alive_, hn::Ge(hn::Max(rest_c, rest), zero));
+      const V rest_c = hn::Add(c.height, hn::MulAdd(base_s1, c.x, base_s0));
+      const V rest = hn::Add(height, hn::MulAdd(base_s1, x, base_s0));
+      const M reached = hn::And(alive, hn::Ge(hn::Max(rest_c, rest), zero));
       if (!hn::AllFalse(d, reached)) {
-        const M first_reached = hn::And(alive_, hn::Ge(rest_c, zero));
-        if (!hn::AllFalse(d, first_reached)) resolve(first_reached, c.x, c.height, rest_c);
-        last_x_ = c.x;
-        last_h_ = c.height;
-        test_event(alive_, x, height);
+        // Lanes that the edge between the lines reaches first, and the others at the line.
+        M lanes = reached;
+        M first_lanes = hn::And(reached, hn::Ge(rest_c, zero));
+        FacetEvent<D> event{hn::IfThenElse(first_lanes, c.x, x), hn::IfThenElse(first_lanes, c.height, height),
+                            hn::IfThenElse(first_lanes, last_event_x, c.x),
+                            hn::IfThenElse(first_lanes, last_h, c.height)};
+        for (;;) {
+          resolve(lanes, event);
+          base_s0 = base_s0_;
+          base_s1 = base_s1_;
+          alive = alive_;
+          lanes = hn::And(hn::And(first_lanes, alive),
+                          hn::Ge(hn::Add(height, hn::MulAdd(base_s1, x, base_s0)), zero));
+          if (hn::AllFalse(d, lanes)) break;
+          first_lanes = hn::MaskFromVec(zero);
+          event = {x, height, c.x, c.height};
+        }
       }
-      last_x_ = x;
-      last_h_ = height;
+      last_x = x;
+      last_event_x = x;
+      last_h = height;
       line = next;
     }
+    last_x_ = last_event_x;
+    last_h_ = last_h;
   }
 
-  // Resolves the rows up to the slope of an event: they show the facet between the last event and this one.
-  void resolve(M lanes, V x, V height, V rest) {
+  // Resolves the rows up to the slope of an event: they show the facet between the event before it and this one.
+  HWY_INLINE void resolve(M lanes, const FacetEvent<D>& event) {
     const D d;
-    const V zero = hn::Zero(d);
-    const V one = hn::Set(d, T(1));
-    const V sigma = hn::MulAdd(sigma1_, x, sigma0_);
-    const V per_sigma = reciprocal(d, sigma);
-    const V reached = hn::Mul(hn::Add(height, hn::MulAdd(base1_, x, base0_)), per_sigma);
-    V rows = hn::Max(model_.count_up_to(reached), hn::Add(row_, one));
-    rows = hn::Min(rows, end_);
-    // The place where the next row's ray meets the facet.
-    const V before = hn::Min(hn::Add(last_h_, rest_at(last_x_)), zero);
-    const V share =
-        hn::Min(hn::Mul(before, reciprocal(d, hn::Sub(before, hn::Max(rest, smallest_divisor())))), one);
-    const V at_x = hn::MulAdd(share, hn::Sub(x, last_x_), last_x_);
-    const V at_h = hn::MulAdd(share, hn::Sub(height, last_h_), last_h_);
-    const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
-    const V top = hn::Sub(rows, one);
-    const M more = hn::And(lanes, hn::Gt(top, row_));
-    // Where pairs are stored without a branch, one here would be guessed wrong too often.
-    if (!kStoresPairs && hn::AllFalse(d, more)) {
-      scatter<kValueStep>(d, group_.start, lane0_, lanes, top, at);
-    } else {
-      const V end = hn::Mul(inverse(x, height), per_sigma);
-      const V rise = hn::Sub(reached, slope_);
-      const M rises = hn::And(more, hn::Gt(rise, zero));
-      const V gain = hn::IfThenElse(rises, hn::Div(hn::Sub(end, at), rise), zero);
-      // From the event, which is nearer to the top row: from the first row of a run that begins straight below
-      // the camera the difference of two large numbers would be left.
-      const V at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
-#if HWY_TARGET == HWY_AVX2
-      if constexpr (kStoresPairs)
-        scatter_pairs(d, group_.start, lanes, hn::IfThenElse(lanes, top, row_), at_top, gain);
-#endif
-      // The gain of other rows is 0 already.
-      if constexpr (!kStoresPairs)
-        scatter<kValueStep>(d, group_.start, group_.gain, lane0_, lanes, top, at_top, gain);
-    }
+    const V rows =
+        hn::Min(hn::Max(model_.count_up_to(terms_.slope(event)), hn::Add(row_, hn::Set(d, T(1)))), end_);
+    runs_.add(lanes, event, slope_, row_, rows);
     row_ = hn::IfThenElse(lanes, rows, row_);
     update_slope();
   }
-
-  // Returns w R^2 / |E|; divided by sigma it is the inverse horizontal distance.
-  V inverse(V x, V height) const {
-    return hn::NegMulAdd(height, per_distance_, hn::MulAdd(depth1_, x, depth0_));
-  }
-
-  // Keeps a quotient of two zeros from being NaN.
-  static V smallest_divisor() { return hn::Set(D(), T(1e-30)); }
-
-  static constexpr bool kStoresPairs = kValueStep == 2 && sizeof(T) == 4;
 
   int lane0_;
   PathReader<D> reader_;
   ColumnGroup& group_;
   RowModel<D, kKind> model_;
-  V sigma0_, sigma1_, base0_, base1_, depth0_, depth1_, per_distance_;
+  PathTerms<D> terms_;
+  RunWriter<D, kKind> runs_;
   V row_, end_, slope_, base_s0_, base_s1_;
   M active_, alive_, started_;
   V last_x_, last_h_;  // the last event of each lane
   Extent at_low_{};
   Extent at_high_{};
-  T from_ = 0;
+  V from_, to_;  // lines between which a lane is inside the grid
+  T window_from_ = 0;
 };
 
 }  // namespace
