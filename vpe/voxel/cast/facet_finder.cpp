@@ -14,15 +14,34 @@ bool near(double x, int intervals) { return x > -kExactLines && x < intervals + 
 
 }  // namespace
 
+bool FacetFinder::Found::holds(const mars::ChartPoint& place) const {
+  return place.face == facets.face && place.u >= u0 && place.u <= u1 && place.v >= v0 && place.v <= v1;
+}
+
 const Facets& FacetFinder::at(const glm::dvec3& place_m) {
-  const lod::TileTree& tree = walk_.tree();
   const mars::ChartPoint place = mars::chart_point(place_m);
-  if (found_ && place.face == facets_.face) {
-    const HeightGridFrame& f = facets_.frame;
-    const double x = (place.u - f.u0) / f.du;
-    const double y = (place.v - f.v0) / f.dv;
-    if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
+  if (last_ < found_.size() && found_[last_].holds(place)) return found_[last_].facets;
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    if (!found_[k].holds(place)) continue;
+    last_ = k;
+    return found_[k].facets;
   }
+  last_ = oldest_;
+  if (found_.size() < kKept) {
+    found_.emplace_back();
+    last_ = found_.size() - 1;
+  } else {
+    oldest_ = (oldest_ + 1) % kKept;
+  }
+  // Without a grid of its own, should the next line throw.
+  found_[last_] = {};
+  find(place, found_[last_]);
+  return found_[last_].facets;
+}
+
+void FacetFinder::find(const mars::ChartPoint& place, Found& found) {
+  const lod::TileTree& tree = walk_.tree();
+  Facets& facets = found.facets;
   auto tile = static_cast<lod::TileTree::Index>(place.face);
   // The current cell is (i, j) of 2^level along a side.
   double u0 = -1;
@@ -56,9 +75,9 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   for (int k = 1; k < per_side; k *= 2) halve();
   i -= key.i * per_side;
   j -= key.j * per_side;
-  facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
-  facets_.face = place.face;
-  HeightGridFrame& f = facets_.frame;
+  facets.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
+  facets.face = place.face;
+  HeightGridFrame& f = facets.frame;
   f.intervals = walk_.intervals(tile) / per_side;
   f.u0 = u0;
   f.du = (u1 - u0) / f.intervals;
@@ -69,18 +88,20 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   const bool exact = z > 0 && needs_exact(f, walk_.camera()) &&
                      near((glm::dot(walk_.camera().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
                      near((glm::dot(walk_.camera().up, axes.up) / z - f.v0) / f.dv, f.intervals);
-  facets_.exact_lines = nullptr;
+  facets.exact_lines = nullptr;
   if (exact) {
-    facets_.family = LineFamily::kColumns;
-    exact_held_ = tiles_.exact_grids(tile, posts_of, facets_.family);
-    facets_.exact_lines = &exact_held_->lines(i, j);
+    facets.family = LineFamily::kColumns;
+    found.exact_held = tiles_.exact_grids(tile, posts_of, facets.family);
+    facets.exact_lines = &found.exact_held->lines(i, j);
   } else {
-    held_ = tiles_.any_grids(tile, posts_of);
-    facets_.family = held_->family();
-    facets_.lines = &held_->lines(i, j);
+    found.held = tiles_.any_grids(tile, posts_of);
+    facets.family = found.held->family();
+    facets.lines = &found.held->lines(i, j);
   }
-  found_ = true;
-  return facets_;
+  found.u0 = u0;
+  found.u1 = u1;
+  found.v0 = v0;
+  found.v1 = v1;
 }
 
 }  // namespace vpe::voxel

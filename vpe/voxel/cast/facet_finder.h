@@ -4,6 +4,9 @@
 // marcher, and the tiles that the column walk casts.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "vpe/voxel/cast/column_walk.h"
 #include "vpe/voxel/cast/height_grid_store.h"
 #include "vpe/voxel/columns/refine.h"
@@ -21,12 +24,28 @@ class FacetFinder : public FacetSource {
   const Facets& at(const glm::dvec3& place_m) override;
 
  private:
+  // Holds a height grid and its place in the chart.
+  struct Found {
+    Facets facets;
+    HeightGridStore::Pointer<float> held;  // of `facets`, as is the next
+    HeightGridStore::Pointer<double> exact_held;
+    double u0 = 1;  // empty: holds no place
+    double u1 = -1;
+    double v0 = 1;
+    double v1 = -1;
+
+    bool holds(const mars::ChartPoint& place) const;
+  };
+  // Grids that neighbouring rows of pixels cross again and again.
+  static constexpr std::size_t kKept = 16;
+
+  void find(const mars::ChartPoint& place, Found& found);
+
   const ColumnWalk& walk_;
   ThreadLocalTiles& tiles_;
-  Facets facets_;
-  HeightGridStore::Pointer<float> held_;  // of facets_, as is the next
-  HeightGridStore::Pointer<double> exact_held_;
-  bool found_ = false;
+  std::vector<Found> found_;  // at most kKept
+  std::size_t last_ = 0;      // that was asked for
+  std::size_t oldest_ = 0;
 };
 
 }  // namespace vpe::voxel

@@ -120,13 +120,13 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
                        sector->line_scale.data() + step, sector->line_shift.data() + step,
                        static_cast<float>(y - sector->origin), last - first, a + first, b + first,
                        share + first);
-    for (int k = begin; k < end; ++k) {
-      const int from = std::clamp(k, first, last - 1);
-      if (from == k) continue;
-      a[k] = a[from];
-      b[k] = b[from];
-      share[k] = share[from];
-    }
+    const auto copy = [&](int from, int to_begin, int to_end) {
+      std::fill(a + to_begin, a + to_end, a[from]);
+      std::fill(b + to_begin, b + to_end, b[from]);
+      std::fill(share + to_begin, share + to_end, share[from]);
+    };
+    copy(first, begin, first);
+    copy(last - 1, last, end);
   };
   beside(first_pixel, span.begin);
   beside(span.end, last_pixel);

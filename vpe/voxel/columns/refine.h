@@ -57,8 +57,8 @@ struct RayRow {
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
                 FacetSource& exact_source, float* range, std::vector<int>& unresolved);
 
-// Finds the hints of `count` pixels in one row of samples: pixel k lies at position first + k step among the
-// samples, between a[k] and b[k].
+// Finds the hints of `count` pixels in one row of at least two samples: pixel k lies at position first + k step among the
+// samples, between a[k] and b[k]. A pixel beyond the samples lies at the outermost one.
 void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
                     float* b, float* share);
 

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vpe/voxel/columns/lane_pairs-inl.h"
 #include "vpe/voxel/columns/refine.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,16 +25,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using HintTag = hn::CappedTag<float, 16>;
-
-// Loads one by one, for the reason given at RowRefiner::posts_at().
-template <class D>
-hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
-  alignas(64) std::int32_t at[16];
-  alignas(64) float values[16];
-  hn::Store(index, hn::RebindToSigned<D>(), at);
-  for (std::size_t k = 0; k < hn::Lanes(d); ++k) values[k] = from[at[k]];
-  return hn::Load(d, values);
-}
 
 void hints_from_columns_kernel(const float* samples, int lines, const float* scale, const float* shift, float y,
                                int count, float* a, float* b, float* share) {
@@ -54,8 +45,7 @@ void hints_from_columns_kernel(const float* samples, int lines, const float* sca
         hn::Min(hn::Max(hn::Floor(line), hn::Zero(d)), hn::Set(d, static_cast<float>(lines - 2)));
     const auto step = hn::Min(hn::Add(hn::Iota(di, 0), hn::Set(di, k)), hn::Set(di, count - 1));
     const auto at = hn::Add(hn::Mul(step, hn::Set(di, lines)), hn::ConvertTo(di, before));
-    const auto va = pick(d, samples, at);
-    const auto vb = pick(d, samples + 1, at);
+    const auto [va, vb] = load_pairs(d, samples, at);
     const auto part = hn::Min(hn::Max(hn::Sub(line, before), hn::Zero(d)), hn::Set(d, 1.0F));
     if (used == lanes) {
       hn::StoreU(va, d, a + k);
@@ -82,17 +72,19 @@ void hints_from_row_kernel(const float* samples, int sample_count, double first,
   const auto start = hn::Set(d, static_cast<float>(first - base));
   const auto per = hn::Set(d, static_cast<float>(step));
   const auto offset = hn::Set(di, static_cast<std::int32_t>(base));
-  const auto last = hn::Set(di, sample_count - 1);
+  const auto last = hn::Set(di, sample_count - 2);
   const auto none = hn::Zero(di);
   alignas(64) float some[3][16];
   for (int k = 0; k < count; k += lanes) {
     const auto x = hn::Add(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(k)));
     const auto place = hn::MulAdd(x, per, start);
-    const auto at = hn::Floor(place);
-    const auto part = hn::Sub(place, at);
-    const auto index = hn::Add(hn::ConvertTo(di, at), offset);
-    const auto va = pick(d, samples, hn::Min(hn::Max(index, none), last));
-    const auto vb = pick(d, samples, hn::Min(hn::Max(hn::Add(index, hn::Set(di, 1)), none), last));
+    const auto before = hn::Floor(place);
+    const auto wanted = hn::Add(hn::ConvertTo(di, before), offset);
+    const auto at = hn::Min(hn::Max(wanted, none), last);
+    // Beyond the samples the outermost one is taken.
+    const auto beyond = hn::ConvertTo(d, hn::Sub(wanted, at));
+    const auto part = hn::Min(hn::Max(hn::Add(hn::Sub(place, before), beyond), hn::Zero(d)), hn::Set(d, 1.0F));
+    const auto [va, vb] = load_pairs(d, samples, at);
     if (k + lanes <= count) {
       hn::StoreU(va, d, a + k);
       hn::StoreU(vb, d, b + k);

@@ -12,8 +12,9 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include "vpe/voxel/columns/round_facets-inl.h"
+#include "vpe/voxel/columns/pixel_refiner-inl.h"
 #include "vpe/voxel/columns/round_hints-inl.h"
+#include "vpe/voxel/columns/round_rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -21,78 +22,18 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using RoundTag = hn::CappedTag<float, 16>;
-using RoundExactTag = hn::CappedTag<double, 8>;
-
 // Samples that differ by more than this share of the nearer one belong to different surfaces.
 constexpr double kRoundApart = 0.04;
 // Smooth ground at a grazing angle may rise this many times in range from a sample to the next.
 constexpr double kMostGrazing = 2;
 
-// Refines a vector of floats over height grids of both precisions.
-class RoundPixelRefiner {
- public:
-  using V = hn::Vec<RoundTag>;
-  using M = hn::Mask<RoundTag>;
-
-  RoundPixelRefiner(const RoundRow& row, FacetSource& source, FacetSource& exact_source)
-      : floats_(row, source), doubles_(row, exact_source) {}
-
-  void set_rays(int k) {
-    first_ = k;
-    floats_.set_rays(k);
-  }
-
-  M refine(M todo, V low, V high, V& t) {
-    const RoundTag d;
-    if (hn::AllFalse(d, todo)) return todo;
-    const M found = floats_.refine(todo, low, high, t);
-    const M left = floats_.other_kind();
-    if (HWY_LIKELY(hn::AllFalse(d, left))) return found;
-    return hn::Or(found, refine_exactly(left, low, high, t));
-  }
-
- private:
-  M refine_exactly(M todo, V low, V high, V& t) {
-    const RoundTag d;
-    const RoundExactTag dd;
-    const hn::Rebind<float, RoundExactTag> df;
-    alignas(64) float marks[16];
-    alignas(64) float lows[16];
-    alignas(64) float highs[16];
-    alignas(64) float ts[16];
-    hn::Store(hn::IfThenElse(todo, hn::Set(d, 1.0F), hn::Zero(d)), d, marks);
-    hn::Store(low, d, lows);
-    hn::Store(high, d, highs);
-    hn::Store(t, d, ts);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); lane += hn::Lanes(dd)) {
-      const auto load = [&](const float* from) { return hn::PromoteTo(dd, hn::LoadU(df, from + lane)); };
-      const auto wanted = hn::Gt(load(marks), hn::Zero(dd));
-      auto found = wanted;
-      if (!hn::AllFalse(dd, wanted)) {
-        doubles_.set_rays(first_ + static_cast<int>(lane));
-        auto at = load(ts);
-        found = doubles_.refine(wanted, load(lows), load(highs), at);
-        hn::StoreU(hn::DemoteTo(df, hn::IfThenElse(found, at, load(ts))), df, ts + lane);
-      }
-      hn::StoreU(hn::DemoteTo(df, hn::IfThenElse(found, hn::Set(dd, 1.0), hn::Zero(dd))), df, marks + lane);
-    }
-    t = hn::Load(d, ts);
-    return hn::Gt(hn::Load(d, marks), hn::Zero(d));
-  }
-
-  int first_ = 0;
-  RoundRefiner<RoundTag> floats_;
-  RoundRefiner<RoundExactTag> doubles_;
-};
-
 // Holds what the samples about each pixel say.
 struct RoundEstimate {
-  using V = hn::Vec<RoundTag>;
-  using M = hn::Mask<RoundTag>;
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
 
-  explicit RoundEstimate(const FanHints<RoundTag>::Samples& s) {
-    const RoundTag d;
+  explicit RoundEstimate(const FanHints<FloatTag>::Samples& s) {
+    const FloatTag d;
     const V one = hn::Set(d, 1.0F);
     const V apart = hn::Set(d, static_cast<float>(kRoundApart));
     const V inf = hn::Set(d, std::numeric_limits<float>::infinity());
@@ -129,13 +70,14 @@ struct RoundEstimate {
 
 void refine_round_row_kernel(const RoundRow& row, const FanSamples& fan, FacetSource& source,
                              FacetSource& exact_source, float* range, std::vector<OpenPixel>& open) {
-  const RoundTag d;
-  using V = hn::Vec<RoundTag>;
-  using M = hn::Mask<RoundTag>;
+  const FloatTag d;
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  RoundPixelRefiner refiner(row, source, exact_source);
-  const FanHints<RoundTag> hints(row, fan);
+  PixelRefiner<RoundRays> refiner(row, source, exact_source);
+  const FanHints<FloatTag> hints(row, fan);
   alignas(64) float some[3][16];
+  alignas(64) int pixels[16];
   for (int k = 0; k < row.count; k += lanes) {
     const int used = std::min(lanes, row.count - k);
     const RoundEstimate e(hints.at(k));
@@ -143,7 +85,8 @@ void refine_round_row_kernel(const RoundRow& row, const FanSamples& fan, FacetSo
       std::fill_n(range + k, used, std::numeric_limits<float>::infinity());
       continue;
     }
-    refiner.set_rays(k);
+    for (int lane = 0; lane < lanes; ++lane) pixels[lane] = std::min(k + lane, row.count - 1);
+    refiner.take(pixels);
     V seen = hn::IfThenElse(e.is_close, e.middle, e.near);
     M done = e.sky;
     const auto try_from = [&](M lanes_to_try, V start, V low, V high) {

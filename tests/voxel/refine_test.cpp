@@ -1,0 +1,145 @@
+#include "vpe/voxel/columns/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+namespace {
+
+using namespace vpe::voxel;
+
+// Provides one height grid below the middle of a face, whose facets lie in one tilted plane.
+class TiltedGround : public FacetSource {
+ public:
+  static constexpr int kIntervals = 64;
+  static constexpr double kDepth_m = 1e6;
+
+  explicit TiltedGround(LineFamily family)
+      : posts_(static_cast<std::size_t>((kIntervals + 1) * (kIntervals + 1) + 1 + kReadAhead), 0.0F) {
+    lines_.reference = {1.0 / kDepth_m, 0, 0};
+    lines_.posts = posts_.data() + 1;
+    lines_.side = kIntervals + 1;
+    facets_.face = mars::Face::kPlusZ;
+    facets_.frame = {kIntervals, -0.01, 0.02 / kIntervals, -0.01, 0.02 / kIntervals};
+    facets_.family = family;
+    facets_.lines = &lines_;
+    for (int x = 0; x <= kIntervals; ++x) {
+      for (int y = 0; y <= kIntervals; ++y) {
+        const int line = family == LineFamily::kColumns ? x : (family == LineFamily::kRows ? y : x - y);
+        const int along = family == LineFamily::kColumns ? y : x;
+        posts_[static_cast<std::size_t>(lines_.line(line) + along - posts_.data())] =
+            static_cast<float>(kRise_m * x + kFall_m * y);
+      }
+    }
+  }
+  const Facets& at(const glm::dvec3&) override { return facets_; }
+
+  // Returns where a ray meets the plane; `direction` is of any length.
+  double range_m(const glm::dvec3& camera_m, const glm::dvec3& direction) const {
+    const mars::FaceAxes& axes = mars::face_axes(facets_.face);
+    // 1 for places in the plane.
+    const auto inverse_depth_times = [&](const glm::dvec3& p) {
+      const HeightGridFrame& f = facets_.frame;
+      const double z = glm::dot(p, axes.out);
+      const double x = (glm::dot(p, axes.right) - f.u0 * z) / f.du;
+      const double y = (glm::dot(p, axes.up) - f.v0 * z) / f.dv;
+      return z / kDepth_m - (kRise_m * x + kFall_m * y) / (kDepth_m * kDepth_m);
+    };
+    return (1 - inverse_depth_times(camera_m)) / inverse_depth_times(direction) * glm::length(direction);
+  }
+
+ private:
+  static constexpr double kRise_m = 40;  // of H a post
+  static constexpr double kFall_m = -25;
+
+  std::vector<float> posts_;
+  HeightGridLines<float> lines_;
+  Facets facets_;
+};
+
+// Returns a row of rays from above the ground's middle, down to it.
+RayRow row_down(int count) {
+  const mars::FaceAxes& axes = mars::face_axes(mars::Face::kPlusZ);
+  RayRow row;
+  row.camera_m = (TiltedGround::kDepth_m + 5000) * axes.out;
+  row.radius_m = TiltedGround::kDepth_m;
+  row.first = -axes.out - 0.9 * axes.right + 0.13 * axes.up;
+  row.step = (1.8 / count) * axes.right;
+  row.count = count;
+  return row;
+}
+
+double range_m(const RayRow& row, int k) {
+  return TiltedGround(LineFamily::kRows).range_m(row.camera_m, row.first + static_cast<double>(k) * row.step);
+}
+
+// Refines a row whose hints are off by shares of the range.
+std::vector<float> refined(const RayRow& row, LineFamily family, double off_a, double off_b,
+                           std::vector<int>& unresolved) {
+  TiltedGround ground(family);
+  TiltedGround exact(family);
+  const auto room = static_cast<std::size_t>(row.count);
+  std::vector<float> a(room);
+  std::vector<float> b(room);
+  const std::vector<float> share(room, 0.25F);
+  for (int k = 0; k < row.count; ++k) {
+    a[static_cast<std::size_t>(k)] = static_cast<float>((1 + off_a) * range_m(row, k));
+    b[static_cast<std::size_t>(k)] = static_cast<float>((1 + off_b) * range_m(row, k));
+  }
+  std::vector<float> range(room, -1.0F);
+  refine_row(row, a.data(), b.data(), share.data(), ground, exact, range.data(), unresolved);
+  return range;
+}
+
+TEST(RefineRow, MeetsTheFacetsOfEachRay) {
+  for (const LineFamily family : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
+    for (const double off : {0.0, 0.0004, 0.03}) {
+      for (const int count : {1, 7, 128, 300}) {
+        const RayRow row = row_down(count);
+        std::vector<int> unresolved;
+        const std::vector<float> range = refined(row, family, off, -off, unresolved);
+        EXPECT_TRUE(unresolved.empty());
+        for (int k = 0; k < count; ++k) {
+          const double expected_m = range_m(row, k);
+          EXPECT_NEAR(static_cast<double>(range[static_cast<std::size_t>(k)]), expected_m, 2e-6 * expected_m)
+              << "pixel " << k << " of " << count << ", off by " << off;
+        }
+      }
+    }
+  }
+}
+
+TEST(RefineRow, GivesUpRaysFarFromTheirHints) {
+  const RayRow row = row_down(200);
+  std::vector<int> unresolved;
+  const std::vector<float> range = refined(row, LineFamily::kRows, 0.1, 0.11, unresolved);
+  std::ranges::sort(unresolved);
+  ASSERT_EQ(unresolved.size(), 200U);
+  for (int k = 0; k < row.count; ++k) EXPECT_EQ(unresolved[static_cast<std::size_t>(k)], k);
+  EXPECT_EQ(range[150], static_cast<float>(1.1 * range_m(row, 150)));
+}
+
+TEST(HintsFromRow, AreTheSamplesOnEitherSide) {
+  std::vector<float> samples(40);
+  for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = 100.0F + static_cast<float>(n * n);
+  constexpr int kCount = 37;
+  std::vector<float> a(kCount);
+  std::vector<float> b(kCount);
+  std::vector<float> share(kCount);
+  const double first = -2.25;
+  const double step = 1.25;
+  hints_from_row(samples.data(), static_cast<int>(samples.size()), first, step, kCount, a.data(), b.data(),
+                 share.data());
+  for (std::size_t k = 0; k < kCount; ++k) {
+    const double place = std::clamp(first + static_cast<double>(k) * step, 0.0, 39.0);
+    const auto before = static_cast<std::size_t>(std::min(std::floor(place), 38.0));
+    EXPECT_EQ(a[k], samples[before]) << k;
+    EXPECT_EQ(b[k], samples[before + 1]) << k;
+    EXPECT_NEAR(static_cast<double>(share[k]), place - static_cast<double>(before), 1e-5) << k;
+  }
+}
+
+}  // namespace
