@@ -76,7 +76,7 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
             HorizonWalk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, camera, rows,
                                                group);
             if (!walk.any()) continue;
-            walk.start_at_foot(at, height, paths);
+            walk.start_at_foot(at, height);
             walk.run(first, until);
             walk.store();
           }
@@ -92,7 +92,7 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
     if (!walk.any()) continue;
     if (begins)
       walk.start_at_foot(static_cast<float>(foot.on(family)),
-                         static_cast<float>(foot.height(lines.reference, camera)), paths);
+                         static_cast<float>(foot.height(lines.reference, camera)));
     walk.run(first, last);
     walk.store();
   }

@@ -195,11 +195,17 @@ class RunWriter<hn::CappedTag<float, kMaxLanes>, kKind> {
     const PathTerms<D> terms{of_lane(terms_.sigma0), of_lane(terms_.sigma1), of_lane(terms_.base0),
                              of_lane(terms_.base1),  of_lane(terms_.depth0), of_lane(terms_.depth1),
                              terms_.per_distance};
-    const V row = get(kRow);
+    V row = get(kRow);
+    V rows = get(kRows);
+    if constexpr (!kWhole) {
+      // What other lanes hold is not a row, and slopes of rows may be read from a table.
+      row = hn::IfThenElseZero(there, row);
+      rows = hn::IfThenElse(there, rows, hn::Set(d, 1.0F));
+    }
     decltype(auto) model = model_.with_lanes(of_lane);
     const V slope = kKind == RowKind::kEven ? model.slope(row) : get(kSlope);
     FacetRun<D> run = facet_run<D, kKind>(terms, model, {get(kX), get(kHeight), get(kLastX), get(kLastHeight)},
-                                          slope, row, get(kRows));
+                                          slope, row, rows);
     if constexpr (!kWhole) {
       run.top = hn::IfThenElse(there, run.top, hn::Set(d, spare_row_));
       run.start = hn::IfThenElseZero(there, run.start);

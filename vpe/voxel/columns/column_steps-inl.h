@@ -1,7 +1,7 @@
 // Steps the floating horizon of a group of columns through one height grid: the inner loop of the ray backend.
 //
 // Part of column_kernel.cpp, called by walk_grid(). The paths come from column_paths-inl.h, posts from
-// column_lines-inl.h, slopes from column_rows-inl.h. Events (crossings with edges) resolve rows.
+// column_lines-inl.h. Events (crossings with edges) resolve rows: column_horizon-inl.h.
 #if defined(VPE_VOXEL_COLUMN_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_STEPS_INL_H_
 #undef VPE_VOXEL_COLUMN_STEPS_INL_H_
@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "vpe/voxel/columns/column_horizon-inl.h"
 #include "vpe/voxel/columns/column_lines-inl.h"
 #include "vpe/voxel/columns/column_paths-inl.h"
 #include "vpe/voxel/columns/column_rows-inl.h"
@@ -39,45 +40,23 @@ class HorizonWalk {
 
   HorizonWalk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind,
               int lane0, const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
-      : lane0_(lane0),
-        reader_(lines, family, intervals, load(paths.position0), load(paths.position1)),
-        group_(group),
-        model_(rows, group, lane0),
-        terms_{load(paths.sigma0),
-               load(paths.sigma1),
-               load(paths.base0),
-               load(paths.base1),
-               load(paths.depth0),
-               load(paths.depth1),
-               hn::Set(D(), static_cast<T>(1.0 / camera.distance_m))},
-        runs_(terms_, model_, rows, group, lane0) {
-    const D d;
-    row_ = load(group.row);
-    end_ = load(group.row_end);
-    from_ = load(paths.from);
-    to_ = load(paths.to);
-    active_ = hn::Eq(load(paths.kind), hn::Set(d, static_cast<T>(kind)));
-    started_ = hn::MaskFromVec(hn::Zero(d));
-    last_x_ = hn::Zero(d);
-    last_h_ = hn::Zero(d);
-    update_slope();
-  }
+      : reader_(lines, family, intervals, load_lanes<D>(paths.position0, lane0),
+                load_lanes<D>(paths.position1, lane0)),
+        horizon_(paths, kind, lane0, camera, rows, group),
+        from_(load_lanes<D>(paths.from, lane0)),
+        to_(load_lanes<D>(paths.to, lane0)) {}
 
   // Returns true if some lane has unresolved rows.
-  bool any() const { return !hn::AllFalse(D(), alive_); }
+  bool any() const { return horizon_.any(); }
 
   // Starts the lanes whose path begins at the camera's foot inside this grid, at line `foot` with height
   // `height`.
-  void start_at_foot(T foot, T height, const Paths& paths) {
+  void start_at_foot(T foot, T height) {
     const D d;
     const V at = hn::Set(d, foot);
-    const V from = load(paths.from);
-    const V to = load(paths.to);
     const V near = hn::Set(d, sizeof(T) == 8 ? T(1e-9) : T(1e-4));
-    started_ = hn::And(
-        active_, hn::Or(hn::Lt(hn::Abs(hn::Sub(from, at)), near), hn::Lt(hn::Abs(hn::Sub(to, at)), near)));
-    last_x_ = at;
-    last_h_ = hn::Set(d, height);
+    const M begins = hn::Or(hn::Lt(hn::Abs(hn::Sub(from_, at)), near), hn::Lt(hn::Abs(hn::Sub(to_, at)), near));
+    horizon_.start(hn::And(horizon_.active(), begins), at, hn::Set(d, height));
   }
 
   // Walks outward from line `first` to line `last`, in whole blocks where possible. Skips hidden blocks.
@@ -99,25 +78,9 @@ class HorizonWalk {
   }
 
   // Writes the lanes' runs and next rows to the group.
-  void store() {
-    runs_.finish();
-    alignas(64) T rows[kMaxLanes];
-    hn::Store(row_, D(), rows);
-    for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
-      const auto lane = static_cast<std::size_t>(lane0_) + k;
-      group_.row[lane] = static_cast<float>(rows[k]);
-    }
-  }
+  void store() { horizon_.store(); }
 
  private:
-  template <typename S>
-  V load(const S* from) const {
-    alignas(64) T values[kMaxLanes];
-    for (std::size_t k = 0; k < hn::Lanes(D()); ++k)
-      values[k] = static_cast<T>(from[lane0_ + static_cast<int>(k)]);
-    return hn::Load(D(), values);
-  }
-
   // Walks a block whose extents are known: lanes that enter or leave it make its ends slower, not its middle.
   template <bool kUp>
   void walk_block(int first, int last) {
@@ -125,8 +88,8 @@ class HorizonWalk {
     const D d;
     const V far = hn::Set(d, T(1e30));
     // A lane has started two lines after it enters.
-    const T low = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(alive_, from_, hn::Neg(far))));
-    const T high = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive_, to_, far)));
+    const T low = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(horizon_.alive(), from_, hn::Neg(far))));
+    const T high = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(horizon_.alive(), to_, far)));
     const auto bound = [&](T line) {
       return static_cast<int>(
           std::clamp(line, static_cast<T>(std::min(first, last)), static_cast<T>(std::max(first, last))));
@@ -165,17 +128,6 @@ class HorizonWalk {
 
   static int floor_block(int k) { return k >= 0 ? k / kBlockLines : -((kBlockLines - 1 - k) / kBlockLines); }
 
-  // Subtracts the line z = slope sigma of the next row from the paths' heights, and updates which lanes are
-  // alive.
-  void update_slope() {
-    slope_ = model_.slope(row_);
-    base_s0_ = hn::NegMulAdd(slope_, terms_.sigma0, terms_.base0);
-    base_s1_ = hn::NegMulAdd(slope_, terms_.sigma1, terms_.base1);
-    alive_ = hn::And(active_, hn::Lt(row_, end_));
-  }
-
-  V rest_at(V x) const { return hn::MulAdd(base_s1_, x, base_s0_); }
-
   struct Extent {
     T low;
     T high;
@@ -183,8 +135,8 @@ class HorizonWalk {
   Extent extent(V position) const {
     const D d;
     const V far = hn::Set(d, T(1e30));
-    return {hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive_, position, far))),
-            hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(alive_, position, hn::Neg(far))))};
+    return {hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(horizon_.alive(), position, far))),
+            hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(horizon_.alive(), position, hn::Neg(far))))};
   }
 
   // Returns true if nothing between two lines of one block can reach any lane's next row.
@@ -199,13 +151,11 @@ class HorizonWalk {
     const T* maxima = reader_.maxima(floor_block(low));
     T highest = maxima[c0];
     for (int c = c0 + 1; c <= c1; ++c) highest = std::max(highest, maxima[c]);
-    const V a = rest_at(hn::Set(d, static_cast<T>(low)));
-    const V b = rest_at(hn::Set(d, static_cast<T>(high)));
+    const V a = horizon_.rest_at(hn::Set(d, static_cast<T>(low)));
+    const V b = horizon_.rest_at(hn::Set(d, static_cast<T>(high)));
     const V top = hn::Add(hn::Max(a, b), hn::Set(d, highest));
-    return hn::AllFalse(d, hn::And(alive_, hn::Ge(top, hn::Zero(d))));
+    return hn::AllFalse(d, hn::And(horizon_.alive(), hn::Ge(top, hn::Zero(d))));
   }
-
-  M in_front(V x) const { return hn::Gt(hn::MulAdd(terms_.sigma1, x, terms_.sigma0), hn::Zero(D())); }
 
   // Returns true if all lanes that are alive have started and are inside the grid, in front of the camera, at
   // both lines.
@@ -214,26 +164,9 @@ class HorizonWalk {
     if (at_low_.low < reader_.first_position(low) || at_low_.high >= reader_.last_position(low)) return false;
     if (at_high_.low < reader_.first_position(high) || at_high_.high >= reader_.last_position(high))
       return false;
-    const M ready = hn::And(started_, hn::And(in_front(hn::Set(d, static_cast<T>(low))),
-                                              in_front(hn::Set(d, static_cast<T>(high)))));
-    return hn::AllFalse(d, hn::AndNot(ready, alive_));
-  }
-
-  // Records a path's first event. Nothing of this grid lies before it, so rows are resolved at the event
-  // itself.
-  void begin_path(M lanes, V x, V height) {
-    const D d;
-    last_x_ = hn::IfThenElse(lanes, x, last_x_);
-    last_h_ = hn::IfThenElse(lanes, hn::Sub(height, hn::Set(d, T(1))), last_h_);
-    started_ = hn::Or(started_, lanes);
-  }
-
-  // Resolves rows of the lanes whose event reaches their next row.
-  void test_event(M lanes, V x, V height) {
-    const D d;
-    const V rest = hn::Add(height, rest_at(x));
-    const M reached = hn::And(hn::And(lanes, alive_), hn::Ge(rest, hn::Zero(d)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, {x, height, last_x_, last_h_});
+    const M ready = hn::And(horizon_.started(), hn::And(horizon_.in_front(hn::Set(d, static_cast<T>(low))),
+                                                        horizon_.in_front(hn::Set(d, static_cast<T>(high)))));
+    return hn::AllFalse(d, hn::AndNot(ready, horizon_.alive()));
   }
 
   // Starts the lanes that are on line k, after hidden blocks or at the border of the grid.
@@ -241,12 +174,10 @@ class HorizonWalk {
     const D d;
     const typename PathReader<D>::Line line = reader_.gather(k);
     const V x = hn::Set(d, static_cast<T>(k));
-    const M here = hn::And(active_, hn::And(reader_.on_line(k, line), in_front(x)));
+    const M here = hn::And(horizon_.active(), hn::And(reader_.on_line(k, line), horizon_.in_front(x)));
     const V height = reader_.height_on(line);
-    begin_path(here, x, height);
-    test_event(here, x, height);
-    last_x_ = hn::IfThenElse(here, x, last_x_);
-    last_h_ = hn::IfThenElse(here, height, last_h_);
+    horizon_.begin_path(here, x, height);
+    horizon_.take_event(here, x, height);
   }
 
   static Reach reach_for(T width) {
@@ -292,30 +223,16 @@ class HorizonWalk {
                        hn::Le(low_post, hn::Set(d, reader_.last_position(low_k))));
       here = hn::And(here, hn::And(hn::Ge(high_post, hn::Set(d, reader_.first_position(low_k + 1))),
                                    hn::Le(high_post, hn::Set(d, reader_.last_position(low_k + 1)))));
-      here = hn::And(here, hn::And(active_, in_front(c.x)));
+      here = hn::And(here, hn::And(horizon_.active(), horizon_.in_front(c.x)));
       // A path that begins at the camera's foot has no events before it.
-      here = hn::And(here, outward<kUp>(c.x));
-      process_event(here, c.x, c.height);
+      here = hn::And(here, horizon_.template outward<kUp>(c.x));
+      horizon_.process_event(here, c.x, c.height);
       const V x = hn::Set(d, static_cast<T>(next_k));
-      const M there =
-          hn::And(hn::And(active_, reader_.on_line(next_k, next)), hn::And(in_front(x), outward<kUp>(x)));
-      process_event(there, x, reader_.height_on(next));
+      const M there = hn::And(hn::And(horizon_.active(), reader_.on_line(next_k, next)),
+                              hn::And(horizon_.in_front(x), horizon_.template outward<kUp>(x)));
+      horizon_.process_event(there, x, reader_.height_on(next));
       line = next;
     }
-  }
-
-  template <bool kUp>
-  M outward(V x) const {
-    const M beyond = kUp ? hn::Ge(x, last_x_) : hn::Le(x, last_x_);
-    return hn::Or(beyond, hn::Not(started_));
-  }
-
-  // Starts lanes where needed, tests the event and makes it the last one.
-  void process_event(M lanes, V x, V height) {
-    begin_path(hn::AndNot(started_, lanes), x, height);
-    test_event(lanes, x, height);
-    last_x_ = hn::IfThenElse(lanes, x, last_x_);
-    last_h_ = hn::IfThenElse(lanes, height, last_h_);
   }
 
   // Walks a block, or a part of it, that all lanes cross.
@@ -339,12 +256,12 @@ class HorizonWalk {
       return reader_.template read<kReach>(x, (from >> 16) - 1, k == 0 ? line_0 : posts);
     };
     V last_x = hn::Set(d, static_cast<T>(first));
-    // Copies of members, which stay in registers.
-    V base_s0 = base_s0_;
-    V base_s1 = base_s1_;
-    M alive = alive_;
-    V last_h = last_h_;
-    V last_event_x = last_x_;
+    // Copies, which stay in registers.
+    V base_s0 = horizon_.base_s0();
+    V base_s1 = horizon_.base_s1();
+    M alive = horizon_.alive();
+    V last_h = horizon_.last_height();
+    V last_event_x = horizon_.last_x();
     typename PathReader<D>::Line line = read(last_x, first);
     for (int k = first + kStep; k != last + kStep; k += kStep) {
       from += step_from;
@@ -364,10 +281,10 @@ class HorizonWalk {
                             hn::IfThenElse(first_lanes, last_event_x, c.x),
                             hn::IfThenElse(first_lanes, last_h, c.height)};
         for (;;) {
-          resolve(lanes, event);
-          base_s0 = base_s0_;
-          base_s1 = base_s1_;
-          alive = alive_;
+          horizon_.resolve(lanes, event);
+          base_s0 = horizon_.base_s0();
+          base_s1 = horizon_.base_s1();
+          alive = horizon_.alive();
           lanes = hn::And(hn::And(first_lanes, alive),
                           hn::Ge(hn::Add(height, hn::MulAdd(base_s1, x, base_s0)), zero));
           if (hn::AllFalse(d, lanes)) break;
@@ -380,32 +297,14 @@ class HorizonWalk {
       last_h = height;
       line = next;
     }
-    last_x_ = last_event_x;
-    last_h_ = last_h;
+    horizon_.set_last(last_event_x, last_h);
   }
 
-  // Resolves the rows up to the slope of an event: they show the facet between the event before it and this one.
-  HWY_INLINE void resolve(M lanes, const FacetEvent<D>& event) {
-    const D d;
-    const V rows =
-        hn::Min(hn::Max(model_.count_up_to(terms_.slope(event)), hn::Add(row_, hn::Set(d, T(1)))), end_);
-    runs_.add(lanes, event, slope_, row_, rows);
-    row_ = hn::IfThenElse(lanes, rows, row_);
-    update_slope();
-  }
-
-  int lane0_;
   PathReader<D> reader_;
-  ColumnGroup& group_;
-  RowModel<D, kKind> model_;
-  PathTerms<D> terms_;
-  RunWriter<D, kKind> runs_;
-  V row_, end_, slope_, base_s0_, base_s1_;
-  M active_, alive_, started_;
-  V last_x_, last_h_;  // the last event of each lane
+  Horizon<D, kKind> horizon_;
+  V from_, to_;  // lines between which a lane is inside the grid
   Extent at_low_{};
   Extent at_high_{};
-  V from_, to_;  // lines between which a lane is inside the grid
   T window_from_ = 0;
 };
 
