@@ -81,7 +81,7 @@ class Horizon {
     last_h_ = height;
   }
 
-  // What rest_at() is made of: it changes with each row that is resolved.
+  // Return what rest_at() is made of. Both change with each row that is resolved.
   V base_s0() const { return base_s0_; }
   V base_s1() const { return base_s1_; }
   // Returns by how much the path at line x lies above the ray of a lane's next row; ground there adds its height.
