@@ -429,7 +429,7 @@ TEST_P(RendererContract, DamageLooksTheSameWithAndWithoutWaiting) {
   const auto planet = build_fake(path, FakeElevation(bumpy_height), 50000);
   const auto open_damaged = [&] {
     return paging::PlanetFile::open(path.string(), [&](const lod::TileKey& tile) {
-      if (tile.level > 0 && lod::pack(tile) * 31 % 7 < 3)
+      if (tile.level > 0 && (static_cast<std::uint64_t>(lod::pack(tile)) * 0x9e3779b97f4a7c15ULL >> 40) % 7 < 3)
         throw paging::PlanetError("tile " + lod::to_string(tile) + " is damaged");
     });
   };
