@@ -52,6 +52,58 @@ DepthDifferences difference_kernel(const DepthPosts& posts, const DepthPlane& pl
   return {hn::GetLane(hn::MaxOfLanes(d, below)), -hn::GetLane(hn::MinOfLanes(d, above))};
 }
 
+// Calls each(i) for vectors that cover `count` entries, of which there is at least a vector. The last one may repeat some.
+template <class Each>
+HWY_INLINE void for_vectors(std::size_t lanes, std::size_t count, const Each& each) {
+  for (std::size_t i = 0; i + lanes < count; i += lanes) each(i);
+  each(count - lanes);
+}
+
+// Calls use(d) with a tag of at most `count` lanes.
+template <class Use>
+HWY_INLINE void with_lanes(std::size_t count, const Use& use) {
+  const hn::CappedTag<double, kDepthPad> d;
+  if (count < hn::Lanes(d)) {
+    use(hn::CappedTag<double, 1>());
+  } else {
+    use(d);
+  }
+}
+
+void fill_kernel(const DepthRow& row, double* length, double* depth) {
+  with_lanes(row.count, [&](auto d) HWY_ATTR {
+    const auto radius = hn::Set(d, row.radius_m);
+    const auto v2 = hn::Set(d, row.v2);
+    const auto one = hn::Set(d, 1.0);
+    for_vectors(hn::Lanes(d), row.count, [&](std::size_t i) HWY_ATTR {
+      const auto u = hn::LoadU(d, row.u + i);
+      const auto n = hn::Sqrt(hn::Add(hn::Add(hn::Mul(u, u), v2), one));
+      hn::StoreU(n, d, length + i);
+      hn::StoreU(hn::Div(hn::Mul(n, radius), hn::Add(radius, hn::LoadU(d, row.height_m + i))), d, depth + i);
+    });
+  });
+}
+
+DepthRange range_kernel(const double* low, const double* high, std::size_t count) {
+  DepthRange found{};
+  with_lanes(count - 1, [&](auto d) HWY_ATTR {
+    auto all_least = hn::LoadU(d, low);
+    auto cell = hn::Zero(d);
+    for_vectors(hn::Lanes(d), count - 1, [&](std::size_t i) HWY_ATTR {
+      const auto a = hn::LoadU(d, low + i);
+      const auto b = hn::LoadU(d, low + i + 1);
+      const auto p = hn::LoadU(d, high + i);
+      const auto q = hn::LoadU(d, high + i + 1);
+      const auto least = hn::Min(hn::Min(a, b), hn::Min(p, q));
+      const auto most = hn::Max(hn::Max(a, b), hn::Max(p, q));
+      all_least = hn::Min(all_least, least);
+      cell = hn::Max(cell, hn::Sub(most, least));
+    });
+    found = {hn::GetLane(hn::MinOfLanes(d, all_least)), hn::GetLane(hn::MaxOfLanes(d, cell))};
+  });
+  return found;
+}
+
 }  // namespace
 }  // namespace lod::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -60,10 +112,20 @@ HWY_AFTER_NAMESPACE();
 namespace lod {
 
 HWY_EXPORT(difference_kernel);
+HWY_EXPORT(fill_kernel);
+HWY_EXPORT(range_kernel);
 
 DepthDifferences largest_differences(const DepthPosts& posts, const DepthPlane& plane,
                                      const std::array<DepthSide, 3>& sides, const DepthBox& box) {
   return HWY_DYNAMIC_DISPATCH(difference_kernel)(posts, plane, sides, box);
+}
+
+void fill_depths(const DepthRow& row, double* length, double* depth) {
+  HWY_DYNAMIC_DISPATCH(fill_kernel)(row, length, depth);
+}
+
+DepthRange range_of_depths(const double* low, const double* high, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(range_kernel)(low, high, count);
 }
 
 }  // namespace lod

@@ -1,5 +1,5 @@
-// The largest differences of depth between the posts under one flat triangle and the triangle, in vectors. Internal to lod;
-// use lod/mesh/overlay_cut.h.
+// Depths of posts in vectors, and their largest differences from a flat triangle. Internal to lod; use
+// lod/mesh/overlay_cut.h.
 #pragma once
 
 #include <array>
@@ -45,5 +45,25 @@ struct DepthDifferences {
 // sides, up to rounding of 4e-16 of the depths. Posts beside the box, up to the end of a vector, may count too.
 DepthDifferences largest_differences(const DepthPosts& posts, const DepthPlane& plane,
                                      const std::array<DepthSide, 3>& sides, const DepthBox& box);
+
+// A row of posts, and where their depths go.
+struct DepthRow {
+  const double* u;
+  const double* height_m;
+  double v2;  // v^2
+  double radius_m;
+  std::size_t count;
+};
+
+// Sets the lengths n = sqrt(u^2 + v^2 + 1) and the depths n R / (R + h) of a row's posts. The bits do not depend on the
+// instruction set.
+void fill_depths(const DepthRow& row, double* length, double* depth);
+
+// The least depth of two rows of `count` posts each, and the largest difference between the corners of a cell.
+struct DepthRange {
+  double least;
+  double cell;
+};
+DepthRange range_of_depths(const double* low, const double* high, std::size_t count);
 
 }  // namespace lod

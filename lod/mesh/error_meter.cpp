@@ -45,9 +45,9 @@ ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine, Pieces 
   const bool may_leave_out = pieces == Pieces::kLargest && same_grid;
   LargestDistances most;
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
-    const CoarseMesh::Triangle& t = mesh.triangles[k];
     const CoarseMesh::Box& box = mesh.triangle_boxes[k];
     if (!touches(box)) continue;
+    const CoarseMesh::Triangle t = mesh.triangles[k];
     overlay.vary(t);
     if (may_leave_out && cut.leaves_out(t, box, most)) continue;
     overlay.add_posts(t);
@@ -56,7 +56,7 @@ ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine, Pieces 
   for (std::size_t k = 0; k < mesh.segments.size(); ++k) {
     const CoarseMesh::Box& box = mesh.segment_boxes[k];
     if (!touches(box)) continue;
-    const CoarseMesh::Segment& s = mesh.segments[k];
+    const CoarseMesh::Segment s = mesh.segments[k];
     const bool ascending = (s.to.u - s.from.u) * (s.to.v - s.from.v) > 0.0;
     // Such an edge is a diagonal of S itself.
     if (same_grid && ascending && box.i1 - box.i0 == 1 && box.j1 - box.j0 == 1) continue;

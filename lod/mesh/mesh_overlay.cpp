@@ -11,26 +11,6 @@ namespace {
 
 double length_at(double u, double v) { return std::sqrt(u * u + v * v + 1.0); }
 
-// Corners ascend.
-CoarseMesh::Triangle triangle_of(const CoarseMesh::Vertex& a, const CoarseMesh::Vertex& b,
-                                 const CoarseMesh::Vertex& c) {
-  const double bu = b.u - a.u;
-  const double bv = b.v - a.v;
-  const double cu = c.u - a.u;
-  const double cv = c.v - a.v;
-  const double turn = bu * cv - bv * cu;  // > 0: the middle corner lies right of the long edge
-  const double depth_b = b.depth - a.depth;
-  const double depth_c = c.depth - a.depth;
-  const double length_b = b.length - a.length;
-  const double length_c = c.length - a.length;
-  return {{a, b, c},
-          turn < 0.0,
-          (depth_b * cv - depth_c * bv) / turn,
-          (depth_c * bu - depth_b * cu) / turn,
-          (length_b * cv - length_c * bv) / turn,
-          (length_c * bu - length_b * cu) / turn};
-}
-
 }  // namespace
 
 LineTable::LineTable(std::vector<double> lines) : line_(std::move(lines)) {
@@ -60,32 +40,22 @@ FineGrid::FineGrid(const Posts& posts, double radius)
       depth(posts.height_m.size() + kDepthPad),
       length(posts.height_m.size()) {
   const auto side = static_cast<std::size_t>(posts.side());
-  double least = 0.0;
   for (std::size_t j = 0; j < side; ++j) {
-    const double vv = v.data()[j] * v.data()[j];
-    const double* height = posts.height_m.data() + j * side;
-    double* n = length.data() + j * side;
-    double* w = depth.data() + j * side;
-    for (std::size_t i = 0; i < side; ++i) {
-      n[i] = std::sqrt(u.data()[i] * u.data()[i] + vv + 1.0);
-      w[i] = n[i] * radius_m / (radius_m + height[i]);
-    }
-    const double row_least = *std::min_element(w, w + side);
-    least = j == 0 ? row_least : std::min(least, row_least);
+    const double v2 = v.data()[j] * v.data()[j];
+    fill_depths({u.data(), posts.height_m.data() + j * side, v2, radius_m, side}, length.data() + j * side,
+                depth.data() + j * side);
+  }
+  double least = depth.front();
+  double steepest = 0.0;
+  for (std::size_t j = 0; j + 1 < side; ++j) {
+    const double* row = depth.data() + j * side;
+    const DepthRange range = range_of_depths(row, row + side, side);
+    least = std::min(least, range.least);
+    steepest = std::max(steepest, range.cell);
   }
   highest_m = *std::max_element(posts.height_m.begin(), posts.height_m.end());
   padded_u.resize(padded_u.size() + kDepthPad, 1e6);
   std::fill(depth.end() - kDepthPad, depth.end(), least);
-  double steepest = 0.0;
-  for (std::size_t j = 0; j + 1 < side; ++j) {
-    const double* low = depth.data() + j * side;
-    const double* high = low + side;
-    for (std::size_t i = 0; i + 1 < side; ++i) {
-      const double most = std::max(std::max(low[i], low[i + 1]), std::max(high[i], high[i + 1]));
-      const double floor = std::min(std::min(low[i], low[i + 1]), std::min(high[i], high[i + 1]));
-      steepest = std::max(steepest, most - floor);
-    }
-  }
   depth_variation = steepest / least;
   // |grad log n| = |(u, v)| / n^2 <= 1/2.
   length_variation = std::expm1(0.5 * std::hypot(u.widest(), v.widest()));
@@ -99,12 +69,12 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
                                 std::to_string(mesh.vertices.size()) + " vertices of tile " + to_string(key));
   }
   const GridLines lines = grid_lines(key, intervals);
-  std::vector<Vertex> all(mesh.vertices.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  vertices.resize(mesh.vertices.size());
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
     const double u = lines.u[mesh.vertices[k].i];
     const double v = lines.v[mesh.vertices[k].j];
     const double n = length_at(u, v);
-    all[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
+    vertices[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
   }
   triangles.reserve(mesh.triangle_count());
   triangle_boxes.reserve(mesh.triangle_count());
@@ -114,7 +84,7 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
     // Vertices ascend, and triangles begin with their lowest one, counter-clockwise.
     const std::uint16_t* corner = mesh.triangles.data() + t;
     const auto [middle, last] = std::minmax(corner[1], corner[2]);
-    triangles.push_back(triangle_of(all[corner[0]], all[middle], all[last]));
+    triangles.add({corner[0], middle, last});
     const MeshVertex& p = mesh.vertices[corner[0]];
     const MeshVertex& q = mesh.vertices[middle];
     const MeshVertex& r = mesh.vertices[last];
@@ -128,7 +98,7 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
       if (slanting ? a >= b
                    : (from.i != intervals || to.i != intervals) && (from.j != intervals || to.j != intervals))
         continue;
-      segments.push_back({all[a], all[b]});
+      segments.add({a, b});
       segment_boxes.push_back(
           {std::min(from.i, to.i), std::max(from.i, to.i), std::min(from.j, to.j), std::max(from.j, to.j)});
     }

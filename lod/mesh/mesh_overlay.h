@@ -5,9 +5,11 @@
 // triangle.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "lod/mesh/depth_kernel.h"
@@ -72,10 +74,14 @@ struct FineGrid {
   double highest_m = 0;
 };
 
-// A mesh as planes of depth over its triangles.
+// A mesh as planes of depth over its triangles. It keeps its vertices, and makes its pieces when they are asked for, since a
+// piece takes several times the memory of the numbers of its vertices.
 struct CoarseMesh {
   CoarseMesh(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
              double radius_m);
+  // Pieces refer to the vertices.
+  CoarseMesh(const CoarseMesh&) = delete;
+  CoarseMesh& operator=(const CoarseMesh&) = delete;
 
   struct Vertex {
     double u, v;
@@ -85,24 +91,74 @@ struct CoarseMesh {
   struct Box {
     std::uint16_t i0, i1, j0, j1;
   };
-  struct Triangle {
-    Vertex corner[3];  // ascending (v, u)
+  struct Gradient {
+    double du, dv;
+  };
+  class Triangle {
+   public:
+    // Corners ascend by (v, u).
+    Triangle(const Vertex& low, const Vertex& middle, const Vertex& high);
+    Gradient length_gradient() const;
+
+    Vertex corner[3];
     bool middle_left;
-    double depth_du, depth_dv, length_du, length_dv;
+    double depth_du, depth_dv;
+
+   private:
+    double turn_;  // > 0: the middle corner lies right of the long edge
   };
   struct Segment {
     Vertex from, to;
+  };
+  // Makes pieces of `Corners` vertices.
+  template <class Piece, std::size_t Corners>
+  class Pieces {
+   public:
+    explicit Pieces(const std::vector<Vertex>& vertices) : vertices_(vertices) {}
+    std::size_t size() const { return corners_.size(); }
+    Piece operator[](std::size_t k) const {
+      return std::apply([&](auto... at) { return Piece{vertices_[at]...}; }, corners_[k]);
+    }
+    void reserve(std::size_t count) { corners_.reserve(count); }
+    void add(const std::array<std::uint16_t, Corners>& corners) { corners_.push_back(corners); }
+
+   private:
+    const std::vector<Vertex>& vertices_;
+    std::vector<std::array<std::uint16_t, Corners>> corners_;
   };
 
   TileKey key;
   int intervals;
   double radius_m;
-  std::vector<Triangle> triangles;
+  std::vector<Vertex> vertices;
+  Pieces<Triangle, 3> triangles{vertices};
   std::vector<Box> triangle_boxes;
   // The edges that can cross grid lines between posts, and the north and east borders, whose posts belong to no
   // triangle.
-  std::vector<Segment> segments;
+  Pieces<Segment, 2> segments{vertices};
   std::vector<Box> segment_boxes;
 };
+
+inline CoarseMesh::Triangle::Triangle(const Vertex& low, const Vertex& middle, const Vertex& high)
+    : corner{low, middle, high} {
+  const double bu = middle.u - low.u;
+  const double bv = middle.v - low.v;
+  const double cu = high.u - low.u;
+  const double cv = high.v - low.v;
+  const double depth_b = middle.depth - low.depth;
+  const double depth_c = high.depth - low.depth;
+  turn_ = bu * cv - bv * cu;
+  middle_left = turn_ < 0.0;
+  depth_du = (depth_b * cv - depth_c * bv) / turn_;
+  depth_dv = (depth_c * bu - depth_b * cu) / turn_;
+}
+
+inline CoarseMesh::Gradient CoarseMesh::Triangle::length_gradient() const {
+  const auto& [a, b, c] = corner;
+  const double length_b = b.length - a.length;
+  const double length_c = c.length - a.length;
+  return {(length_b * (c.v - a.v) - length_c * (b.v - a.v)) / turn_,
+          (length_c * (b.u - a.u) - length_b * (c.u - a.u)) / turn_};
+}
 
 }  // namespace lod

@@ -54,10 +54,11 @@ void OverlayPoints::add(double n, double mesh_depth, double depth, double mesh_l
   height_error_[0] = height_error;
 }
 
-void OverlayPoints::add_row(const CoarseMesh::Triangle& t, int j, int first, int end) {
+void OverlayPoints::add_row(const CoarseMesh::Triangle& t, const CoarseMesh::Gradient& length_by, int j,
+                            int first, int end) {
   const CoarseMesh::Vertex& low = t.corner[0];
   const double depth_row = low.depth + t.depth_dv * (fine_.v[j] - low.v);
-  const double length_row = low.length + t.length_dv * (fine_.v[j] - low.v);
+  const double length_row = low.length + length_by.dv * (fine_.v[j] - low.v);
   const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(side_);
   const double* u = fine_.u.data();
   const double* depth = fine_.depth.data() + row;
@@ -66,12 +67,12 @@ void OverlayPoints::add_row(const CoarseMesh::Triangle& t, int j, int first, int
   for (; i + 1 < end; i += 2) {
     const Pair off = load_pair<Pair>(u + i) - low.u;
     const Pair n = load_pair<Pair>(length + i);
-    add(n, depth_row + t.depth_du * off, load_pair<Pair>(depth + i), length_row + t.length_du * off, n, total_,
+    add(n, depth_row + t.depth_du * off, load_pair<Pair>(depth + i), length_row + length_by.du * off, n, total_,
         sagitta_, height_error_);
   }
   if (i < end) {
     const double off = u[i] - low.u;
-    add(length[i], depth_row + t.depth_du * off, depth[i], length_row + t.length_du * off, length[i]);
+    add(length[i], depth_row + t.depth_du * off, depth[i], length_row + length_by.du * off, length[i]);
   }
 }
 
@@ -92,14 +93,21 @@ void OverlayPoints::add_point(const CoarseMesh::Segment& s, const Point& p, int 
 
 void OverlayPoints::vary(const CoarseMesh::Triangle& t) {
   const auto& [a, b, c] = t.corner;
-  const auto variation = [&](double du, double dv, double fa, double fb, double fc) {
-    const double least = std::min({fa, fb, fc});
-    const double cell = std::abs(du) * fine_.u.widest() + std::abs(dv) * fine_.v.widest();
-    return std::min(cell, std::max({fa, fb, fc}) - least) / least;
+  // Divides where the variation may be larger than the largest so far only.
+  const auto raise_by = [&](double& largest, double fa, double fb, double fc, const auto& gradient) {
+    const double least = std::min(std::min(fa, fb), fc);
+    const double limit = largest * least * (1.0 - 1e-15);
+    const double between = std::max(std::max(fa, fb), fc) - least;
+    if (between <= limit) return;
+    const CoarseMesh::Gradient by = gradient();
+    const double cell = std::abs(by.du) * fine_.u.widest() + std::abs(by.dv) * fine_.v.widest();
+    if (cell <= limit) return;
+    largest = std::max(largest, std::min(cell, between) / least);
   };
-  depth_variation_ = std::max(depth_variation_, variation(t.depth_du, t.depth_dv, a.depth, b.depth, c.depth));
-  length_variation_ =
-      std::max(length_variation_, variation(t.length_du, t.length_dv, a.length, b.length, c.length));
+  raise_by(depth_variation_, a.depth, b.depth, c.depth, [&] {
+    return CoarseMesh::Gradient{t.depth_du, t.depth_dv};
+  });
+  raise_by(length_variation_, a.length, b.length, c.length, [&] { return t.length_gradient(); });
 }
 
 void OverlayPoints::add_posts(const CoarseMesh::Triangle& t) {
@@ -107,6 +115,7 @@ void OverlayPoints::add_posts(const CoarseMesh::Triangle& t) {
   const CoarseMesh::Vertex& middle = t.corner[1];
   const CoarseMesh::Vertex& high = t.corner[2];
   const double whole = (high.u - low.u) / (high.v - low.v);
+  const CoarseMesh::Gradient length_by = t.length_gradient();
   const int begin = fine_.v.first(low.v);
   const int turn = fine_.v.first(middle.v);
   const int end = fine_.v.first(high.v);
@@ -118,9 +127,9 @@ void OverlayPoints::add_posts(const CoarseMesh::Triangle& t) {
       const int one = fine_.u.first(a.u + half * (v - a.v));
       const int two = fine_.u.first(low.u + whole * (v - low.v));
       if (t.middle_left) {
-        add_row(t, j, one, two);
+        add_row(t, length_by, j, one, two);
       } else {
-        add_row(t, j, two, one);
+        add_row(t, length_by, j, two, one);
       }
     }
   };

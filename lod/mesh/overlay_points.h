@@ -41,7 +41,7 @@ class OverlayPoints {
   void add(T n, T mesh_depth, T depth, T mesh_length, T length, T& total_most, T& sagitta_most,
            T& height_error_most) const;
   void add(double n, double mesh_depth, double depth, double mesh_length, double length);
-  void add_row(const CoarseMesh::Triangle& t, int j, int first, int end);
+  void add_row(const CoarseMesh::Triangle& t, const CoarseMesh::Gradient& length_by, int j, int first, int end);
   void add_point(const CoarseMesh::Segment& s, const Point& p, int i, int j, double x, double y);
 
   const CoarseMesh& mesh_;

@@ -6,9 +6,21 @@
 
 namespace mars {
 
+namespace {
+
+// Returns std::remainder(angle_deg, 360), which takes longer than a sine, up to the sign of a zero.
+double within_half_turn_deg(double angle_deg) {
+  const double size_deg = std::abs(angle_deg);
+  if (size_deg <= 180.0) return angle_deg;
+  // The difference is exact.
+  return size_deg < 540.0 ? angle_deg - std::copysign(360.0, angle_deg) : std::remainder(angle_deg, 360.0);
+}
+
+}  // namespace
+
 SinCos sin_cos_deg(double angle_deg) {
   // Multiples of 90 are exact in degrees, so the angle is reduced before it is converted to radians.
-  const double reduced = std::remainder(angle_deg, 360.0);
+  const double reduced = within_half_turn_deg(angle_deg);
   const double quarter = std::nearbyint(reduced / 90.0);
   const double rest_rad = (reduced - quarter * 90.0) * kRadiansPerDegree;
   const double s = std::sin(rest_rad);
@@ -20,7 +32,7 @@ SinCos sin_cos_deg(double angle_deg) {
 }
 
 double normalize_lon_deg(double lon_deg) {
-  const double lon = std::remainder(lon_deg, 360.0);
+  const double lon = std::abs(lon_deg) <= 180.0 ? lon_deg : std::remainder(lon_deg, 360.0);
   return lon <= -180.0 ? 180.0 : lon;
 }
 

@@ -22,13 +22,26 @@ namespace {
 
 constexpr double kNotOnPlanet = std::numeric_limits<double>::quiet_NaN();
 
-glm::dvec3 crs_direction(glm::dvec2 p, double centric_scale) {
-  // Rounding may carry the edge of a map over the pole.
-  if (std::abs(p.y) < 90 + 1e-9) p.y = std::clamp(p.y, -90.0, 90.0);
-  if (!is_valid({p.x, p.y})) return glm::dvec3(kNotOnPlanet);
-  const glm::dvec3 d = direction({p.x, p.y});
-  return centric_scale == 1.0 ? d : glm::normalize(glm::dvec3(d.x, d.y, d.z * centric_scale));
-}
+// Makes directions of places in a CRS. Keeps the last latitude, which the pixels of a row share.
+class CrsDirections {
+ public:
+  explicit CrsDirections(double centric_scale) : centric_scale_(centric_scale) {}
+
+  glm::dvec3 operator()(glm::dvec2 p) {
+    // Rounding may carry the edge of a map over the pole.
+    if (std::abs(p.y) < 90 + 1e-9) p.y = std::clamp(p.y, -90.0, 90.0);
+    if (!is_valid({p.x, p.y})) return glm::dvec3(kNotOnPlanet);
+    if (p.y != lat_deg_) lat_ = sin_cos_deg(lat_deg_ = p.y);
+    const SinCos lon = sin_cos_deg(p.x);
+    const glm::dvec3 d(lat_.cos * lon.cos, lat_.cos * lon.sin, lat_.sin);  // direction()
+    return centric_scale_ == 1.0 ? d : glm::normalize(glm::dvec3(d.x, d.y, d.z * centric_scale_));
+  }
+
+ private:
+  double centric_scale_;
+  double lat_deg_ = 0;
+  SinCos lat_ = sin_cos_deg(0);
+};
 
 const char* const kNoGeoreference =
     "give it one, e.g. gdal_translate -a_srs IAU_2015:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif, where CODE is "
@@ -188,6 +201,7 @@ void Georeference::to_pixels_by_proj(std::span<const glm::dvec3> directions,
 }
 
 void Georeference::to_directions(std::span<const glm::dvec2> pixels, std::span<glm::dvec3> directions) const {
+  CrsDirections crs_direction(centric_scale_);
   if (linear_) {
     const Linear& m = *linear_;
     const double area = m.per_lon.x * m.per_lat.y - m.per_lat.x * m.per_lon.y;
@@ -198,7 +212,7 @@ void Georeference::to_directions(std::span<const glm::dvec2> pixels, std::span<g
           upright
               ? glm::dvec2(p.x / m.per_lon.x, p.y / m.per_lat.y)
               : glm::dvec2(p.x * m.per_lat.y - p.y * m.per_lat.x, p.y * m.per_lon.x - p.x * m.per_lon.y) / area;
-      directions[i] = crs_direction(place, centric_scale_);
+      directions[i] = crs_direction(place);
     }
     return;
   }
@@ -211,7 +225,7 @@ void Georeference::to_directions(std::span<const glm::dvec2> pixels, std::span<g
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const glm::dvec2 off = glm::abs(back[i] - pixels[i]);
     const bool on_planet = off.x < 1e-2 && off.y < 1e-2;
-    directions[i] = on_planet ? crs_direction(places[i], centric_scale_) : glm::dvec3(kNotOnPlanet);
+    directions[i] = on_planet ? crs_direction(places[i]) : glm::dvec3(kNotOnPlanet);
   }
 }
 

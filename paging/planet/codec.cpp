@@ -42,7 +42,8 @@ class Writer {
  public:
   static constexpr std::size_t kMostBytes = 5;  // of a number
 
-  explicit Writer(std::size_t most_numbers) : bytes_(most_numbers * kMostBytes) {}
+  explicit Writer(std::size_t most_numbers)
+      : bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(most_numbers * kMostBytes)) {}
 
   void varint(std::uint32_t x) {
     while (x >= 0x80U) {
@@ -52,10 +53,10 @@ class Writer {
     bytes_[size_++] = static_cast<std::uint8_t>(x);
   }
 
-  std::span<const std::uint8_t> bytes() const { return std::span(bytes_).first(size_); }
+  std::span<const std::uint8_t> bytes() const { return {bytes_.get(), size_}; }
 
  private:
-  Bytes bytes_;
+  std::unique_ptr<std::uint8_t[]> bytes_;
   std::size_t size_ = 0;
 };
 
@@ -86,15 +87,29 @@ class Reader {
 
 using Triangle = std::array<std::uint16_t, 3>;
 
-std::vector<Triangle> normalized(const std::vector<std::uint16_t>& indices) {
+// Returns true if triangles start at their lowest vertex and ascend, as those of a lod::TileMesh do.
+bool is_normalized(std::span<const std::uint16_t> indices) {
+  Triangle last{};
+  bool ascends = true;
+  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+    const Triangle tri{indices[t], indices[t + 1], indices[t + 2]};
+    ascends = ascends && tri[0] <= std::min(tri[1], tri[2]) && last <= tri;
+    last = tri;
+  }
+  return ascends;
+}
+
+std::vector<std::uint16_t> normalized(std::span<const std::uint16_t> indices) {
   std::vector<Triangle> triangles(indices.size() / 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     Triangle& tri = triangles[t];
     std::copy_n(indices.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, tri.begin());
     std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
   }
-  if (!std::is_sorted(triangles.begin(), triangles.end())) std::sort(triangles.begin(), triangles.end());
-  return triangles;
+  std::sort(triangles.begin(), triangles.end());
+  std::vector<std::uint16_t> flat;
+  for (const Triangle& tri : triangles) flat.insert(flat.end(), tri.begin(), tri.end());
+  return flat;
 }
 
 }  // namespace
@@ -103,12 +118,13 @@ Bytes compress(std::span<const std::uint8_t> raw, int level) {
   // A thread keeps its context, whose tables take longer to be made than small tiles to be packed.
   thread_local const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
                                                                                   ZSTD_freeCCtx);
-  Bytes out(ZSTD_compressBound(raw.size()));
+  // And room for what it packs, so that no bytes are cleared which are then written.
+  thread_local Bytes room;
+  room.resize(std::max(room.size(), ZSTD_compressBound(raw.size())));
   const std::size_t size =
-      ZSTD_compressCCtx(context.get(), out.data(), out.size(), raw.data(), raw.size(), level);
+      ZSTD_compressCCtx(context.get(), room.data(), room.size(), raw.data(), raw.size(), level);
   if (ZSTD_isError(size) != 0U) throw CodecError(std::string("zstd: ") + ZSTD_getErrorName(size));
-  out.resize(size);
-  return out;
+  return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit) {
@@ -228,11 +244,14 @@ Bytes encode_mesh(const PackedMesh& packed) {
     height = h;
   }
   std::uint32_t first = 0;
-  for (const Triangle& t : normalized(mesh.triangles)) {
-    out.varint(t[0] - first);
-    out.varint(static_cast<std::uint32_t>(t[1] - t[0]));
-    out.varint(static_cast<std::uint32_t>(t[2] - t[0]));
-    first = t[0];
+  std::vector<std::uint16_t> sorted;
+  std::span<const std::uint16_t> indices(mesh.triangles);
+  if (!is_normalized(indices)) indices = sorted = normalized(indices);
+  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+    out.varint(std::uint32_t{indices[t]} - first);
+    out.varint(static_cast<std::uint32_t>(indices[t + 1] - indices[t]));
+    out.varint(static_cast<std::uint32_t>(indices[t + 2] - indices[t]));
+    first = indices[t];
   }
   return compress(out.bytes(), kMeshLevel);
 }

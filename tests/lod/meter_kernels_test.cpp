@@ -81,6 +81,44 @@ TEST(DepthKernel, FindsTheLargestDifferencesInATriangle) {
   });
 }
 
+TEST(DepthKernel, FillsRowsOfDepthsAndFindsTheirRange) {
+  constexpr double kRadius_m = 3.39e6;
+  test_support::Random random(11);
+  on_each_target([&] {
+    for (const std::size_t count : {2, 3, 4, 5, 8, 9, 33, 129}) {
+      std::vector<double> u(count);
+      std::vector<double> height_m(2 * count);
+      std::vector<double> length(2 * count + 1, -1.0);
+      std::vector<double> depth(2 * count + 1, -1.0);
+      for (double& x : u) x = random.uniform(-1, 1);
+      for (double& h : height_m) h = random.uniform(-8000, 21000);
+      double least = 1e9;
+      for (std::size_t row = 0; row < 2; ++row) {
+        const double v = random.uniform(-1, 1);
+        const std::size_t at = row * count;
+        lod::fill_depths({u.data(), height_m.data() + at, v * v, kRadius_m, count}, length.data() + at,
+                         depth.data() + at);
+        for (std::size_t k = 0; k < count; ++k) {
+          const double n = std::sqrt(u[k] * u[k] + v * v + 1.0);
+          ASSERT_EQ(length[at + k], n);
+          ASSERT_EQ(depth[at + k], n * kRadius_m / (kRadius_m + height_m[at + k]));
+          least = std::min(least, depth[at + k]);
+        }
+      }
+      ASSERT_EQ(length.back(), -1.0);
+      ASSERT_EQ(depth.back(), -1.0);
+      double cell = 0;
+      for (std::size_t k = 0; k + 1 < count; ++k) {
+        const auto [low, high] = std::minmax({depth[k], depth[k + 1], depth[count + k], depth[count + k + 1]});
+        cell = std::max(cell, high - low);
+      }
+      const lod::DepthRange range = lod::range_of_depths(depth.data(), depth.data() + count, count);
+      ASSERT_EQ(range.least, least);
+      ASSERT_EQ(range.cell, cell);
+    }
+  });
+}
+
 TEST(GridKernel, BoundsARow) {
   test_support::Random random(6);
   on_each_target([&] {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -121,6 +122,18 @@ TEST(Sphere, SinCosIsExactAtMultiplesOf90AndWithinItsBoundElsewhere) {
     const Real cosine = exact::cos_deg(angle);
     bound.add(ulps(got.sin, sine), 2);
     bound.add(ulps(got.cos, cosine), 2);
+  }
+}
+
+TEST(Sphere, SinCosOfAnglesBeyondHalfATurnIsThatOfTheirRemainder) {
+  test_support::Random random(360);
+  for (int n = 0; n < 100000; ++n) {
+    const double size = n % 2 == 0 ? 200 : 2000;
+    const double angle_deg = n < 20 ? 90.0 * (n - 10) : random.uniform(-size, size);
+    const SinCos whole = sin_cos_deg(angle_deg);
+    const SinCos reduced = sin_cos_deg(std::remainder(angle_deg, 360.0));
+    ASSERT_EQ(whole.sin, reduced.sin) << angle_deg;
+    ASSERT_EQ(whole.cos, reduced.cos) << angle_deg;
   }
 }
 
