@@ -1,12 +1,15 @@
 // Compares frames with 10^5 vertices of draped lines (overlay.layers) with bare frames, in alternating rounds, by both backends.
 // docs/measurements/rendering.md has the figures.
 //
-//   layers_bench PLANET LON,LAT [ROUNDS [VERTICES]]
+//   layers_bench PLANET LON,LAT [ROUNDS [VERTICES [BACKEND [VIEW]]]]
+//
+// BACKEND and VIEW select rows by a part of their name.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <functional>
 #include <memory>
@@ -78,8 +81,8 @@ mars::FeatureLayer winding_lines(mars::LonLat about, double reach_deg, int verti
 
 int main(int argc, char** argv) {
   const auto place = argc > 2 ? vpe::app::parse_numbers(argv[2]) : std::nullopt;
-  if (!place || place->size() != 2 || argc > 5) {
-    std::fprintf(stderr, "usage: layers_bench PLANET LON,LAT [ROUNDS [VERTICES]]\n");
+  if (!place || place->size() != 2 || argc > 7) {
+    std::fprintf(stderr, "usage: layers_bench PLANET LON,LAT [ROUNDS [VERTICES [BACKEND [VIEW]]]]\n");
     return 2;
   }
   const int rounds = argc > 3 ? std::atoi(argv[3]) : 7;
@@ -91,7 +94,12 @@ int main(int argc, char** argv) {
   std::printf(
       "| view | bare frame, ms | with lines / bare | processors, ms | with lines / bare | of it draping and drawing, ms |\n"
       "|---|---|---|---|---|---|\n");
+  const auto wanted = [&](const char* name, int argument) {
+    return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
+  };
   for (const core::Backend backend : {core::Backend::kPolygon, core::Backend::kRay}) {
+    const char* const name = backend == core::Backend::kRay ? "ray" : "polygon";
+    if (!wanted(name, 5)) continue;
     vpe::app::RenderOptions options;
     options.backend = backend;
     const vpe::app::Common common;
@@ -99,6 +107,7 @@ int main(int argc, char** argv) {
     for (const LayerCase& one :
          {LayerCase{"near, oblique", 2000, -15, 0.08}, LayerCase{"down from 60 km", 60e3, -90, 0.5},
           LayerCase{"globe", 6e6, -90, 40}}) {
+      if (!wanted(one.what, 6)) continue;
       core::DrawRequest request;
       request.view.camera = mars::to_camera({about.lon_deg, about.lat_deg - (one.pitch_deg > -60 ? 0.12 : 0.0),
                                              ground_m + one.height_m, 0, one.pitch_deg, 0},
@@ -129,8 +138,7 @@ int main(int argc, char** argv) {
         processor_ratio.push_back((frame.processor_ms + overlay.processor_ms) / bare.processor_ms);
         overlay_ms.push_back(overlay.processor_ms);
       }
-      std::printf("| %s, %s | %.0f | %.2f | %.0f | %.2f | %.0f |\n",
-                  backend == core::Backend::kRay ? "ray" : "polygon", one.what, bench::median_of(wall_ms),
+      std::printf("| %s, %s | %.0f | %.2f | %.0f | %.2f | %.0f |\n", name, one.what, bench::median_of(wall_ms),
                   bench::median_of(wall_ratio), bench::median_of(processor_ms),
                   bench::median_of(processor_ratio), bench::median_of(overlay_ms));
       std::fflush(stdout);

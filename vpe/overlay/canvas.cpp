@@ -1,12 +1,18 @@
 #include "vpe/overlay/canvas.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #ifndef VPE_WITHOUT_CAIRO
 
 #include <cairo.h>
+
+#include <cstring>
+#include <optional>
+
+#include "vpe/overlay/stroke_mask.h"
 
 namespace vpe::overlay {
 
@@ -31,6 +37,52 @@ void require(cairo_status_t status) {
 
 void set_ink(cairo_t* context, const Ink& ink) { cairo_set_source_rgba(context, ink.r, ink.g, ink.b, ink.a); }
 
+// Lays a colour over pixels as far as they are covered, premultiplied as Cairo's images are.
+class InkBlend {
+ public:
+  explicit InkBlend(const Ink& ink) {
+    const double a = std::clamp(ink.a, 0.0, 1.0);
+    const auto byte = [](double x) {
+      return static_cast<std::uint32_t>(std::lround(255 * std::clamp(x, 0.0, 1.0)));
+    };
+    premultiplied_ = {byte(a), byte(ink.r * a), byte(ink.g * a), byte(ink.b * a)};
+  }
+
+  void operator()(std::span<const std::uint8_t> coverage, std::uint32_t* pixels) const {
+    constexpr std::size_t kSkipped = 8;
+    for (std::size_t n = 0; n < coverage.size();) {
+      if (n + kSkipped <= coverage.size()) {
+        std::uint64_t eight = 0;
+        std::memcpy(&eight, &coverage[n], kSkipped);
+        if (eight == 0) {
+          n += kSkipped;
+          continue;
+        }
+      }
+      if (coverage[n] != 0) pixels[n] = over(coverage[n], pixels[n]);
+      ++n;
+    }
+  }
+
+ private:
+  static std::uint32_t product(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t t = a * b + 128;
+    return (t + (t >> 8)) >> 8;
+  }
+
+  std::uint32_t over(std::uint32_t coverage, std::uint32_t below) const {
+    const std::uint32_t clear = 255 - product(premultiplied_[0], coverage);
+    std::uint32_t sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t old = below >> (24 - 8 * k) & 255U;
+      sum = sum << 8 | std::min(255U, product(premultiplied_[k], coverage) + product(old, clear));
+    }
+    return sum;
+  }
+
+  std::array<std::uint32_t, 4> premultiplied_{};  // alpha, red, green, blue
+};
+
 void trace(cairo_t* context, std::span<const glm::dvec2> points, bool closed) {
   cairo_new_path(context);
   for (const glm::dvec2& p : points) cairo_line_to(context, p.x, p.y);
@@ -48,6 +100,25 @@ void set_font(cairo_t* context, const Font& font) {
 struct Canvas::State {
   std::unique_ptr<cairo_surface_t, Release> surface;
   std::unique_ptr<cairo_t, Release> context;
+  std::optional<StrokeMask> mask;  // made when the first thin line is drawn
+
+  StrokeMask& thin_lines(int width, int height) {
+    if (!mask) mask.emplace(width, height);
+    return *mask;
+  }
+
+  // Lays a colour over what the mask covers.
+  void blend(const Ink& ink) {
+    // Cairo does not draw yet what waits, nor does it know of what others draw.
+    cairo_surface_flush(surface.get());
+    unsigned char* const bytes = cairo_image_surface_get_data(surface.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+    const InkBlend blend(ink);
+    mask->take_rows([&](int y, int x, std::span<const std::uint8_t> coverage) {
+      blend(coverage, reinterpret_cast<std::uint32_t*>(bytes + static_cast<std::size_t>(y) * stride) + x);
+    });
+    cairo_surface_mark_dirty(surface.get());
+  }
 };
 
 Canvas::Canvas(int width, int height) : width_(width), height_(height), state_(std::make_unique<State>()) {
@@ -68,6 +139,11 @@ Canvas::Canvas(int width, int height) : width_(width), height_(height), state_(s
 Canvas::~Canvas() = default;
 
 void Canvas::line(std::span<const glm::dvec2> points, bool closed, double width_px, const Ink& ink) {
+  if (width_px <= kWidestThinLine_px) {
+    state_->thin_lines(width_, height_).add(points, closed, width_px);
+    state_->blend(ink);
+    return;
+  }
   cairo_t* context = state_->context.get();
   set_ink(context, ink);
   cairo_set_line_width(context, width_px);
@@ -77,6 +153,12 @@ void Canvas::line(std::span<const glm::dvec2> points, bool closed, double width_
 
 void Canvas::dashed(std::span<const glm::dvec2> points, double width_px, const Ink& ink,
                     std::span<const double> lengths_px) {
+  if (width_px <= kWidestThinLine_px && !lengths_px.empty()) {
+    StrokeMask& mask = state_->thin_lines(width_, height_);
+    for (const std::vector<glm::dvec2>& part : dashes(points, lengths_px)) mask.add(part, false, width_px);
+    state_->blend(ink);
+    return;
+  }
   cairo_t* context = state_->context.get();
   cairo_set_dash(context, lengths_px.data(), static_cast<int>(lengths_px.size()), 0);
   line(points, false, width_px, ink);

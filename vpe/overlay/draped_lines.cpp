@@ -17,8 +17,16 @@ constexpr double kLowestGround_m = -12e3;
 constexpr double kLongestStep_px = 1;
 constexpr double kLongestGap_px = 3;  // wider ones, as at a nadir, are not bridged
 constexpr int kMostHalvings = 26;
+// The middle of an edge is that of its ends' directions where that is so near to the middle in degrees.
+constexpr double kBend_px = 0.005;
+constexpr double kShortArc_rad = 0.02;
 
-glm::dvec3 direction_of(glm::dvec2 place_deg) { return mars::direction({place_deg.x, place_deg.y}); }
+// Equals mars::direction() but for rounding: within 1e-15 for places of vector files.
+glm::dvec3 direction_of(glm::dvec2 place_deg) {
+  const glm::dvec2 place = place_deg * mars::kRadiansPerDegree;
+  const double level = std::cos(place.y);
+  return {level * std::cos(place.x), level * std::sin(place.x), std::sin(place.y)};
+}
 
 // Follows lines and collects the run that is open.
 class LineWalk {
@@ -63,14 +71,25 @@ class LineWalk {
  private:
   struct Place {
     glm::dvec2 place_deg;
+    glm::dvec3 up;
     glm::dvec3 point_m;
     std::optional<glm::dvec2> at;
   };
 
-  Place place(glm::dvec2 place_deg) const {
-    const glm::dvec3 up = direction_of(place_deg);
+  Place place(glm::dvec2 place_deg) const { return place(place_deg, direction_of(place_deg)); }
+  Place place(glm::dvec2 place_deg, const glm::dvec3& up) const {
     const glm::dvec3 point_m = up * (frame_.radius_m + sight_.height_m(up) * frame_.exaggeration);
-    return {place_deg, point_m, sight_.to_image(point_m)};
+    return {place_deg, up, point_m, sight_.to_image(point_m)};
+  }
+
+  // Returns the place in the middle of an edge in degrees. That of the ends' directions is off it by less than a quarter of the
+  // arc's square, radians, for short arcs anywhere.
+  Place middle(const Place& from, const Place& to, double arc_m, double nearest_m) const {
+    const glm::dvec2 place_deg = 0.5 * (from.place_deg + to.place_deg);
+    const bool is_straight =
+        arc_m <= kShortArc_rad * frame_.radius_m &&
+        0.25 * arc_m * arc_m * frame_.scale.focal_px <= kBend_px * frame_.radius_m * nearest_m;
+    return is_straight ? place(place_deg, glm::normalize(from.up + to.up)) : place(place_deg);
   }
 
   // Returns whether ground within a cap can be before the horizon and in the image.
@@ -117,9 +136,9 @@ class LineWalk {
       add(to);
       return;
     }
-    const Place middle = place(0.5 * (from.place_deg + to.place_deg));
-    follow(from, middle, halvings + 1);
-    follow(middle, to, halvings + 1);
+    const Place between = middle(from, to, arc_m, distance_m - radius_m);
+    follow(from, between, halvings + 1);
+    follow(between, to, halvings + 1);
   }
 
   void add(const Place& place) {

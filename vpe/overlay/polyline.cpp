@@ -6,7 +6,7 @@ namespace vpe::overlay {
 
 namespace {
 
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
+double cross_product(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 glm::dvec2 left_of(glm::dvec2 a) { return {-a.y, a.x}; }
 
 }  // namespace
@@ -23,7 +23,8 @@ std::vector<glm::dvec2> simplified(std::span<const glm::dvec2> points, double to
     glm::dvec2 along = points[n] - out.back();
     double length_px = glm::length(along);
     const bool passes =
-        length_px >= farthest_px && (!is_open || (cross(rightmost, along) >= 0 && cross(along, leftmost) >= 0));
+        length_px >= farthest_px &&
+        (!is_open || (cross_product(rightmost, along) >= 0 && cross_product(along, leftmost) >= 0));
     if (!passes) {
       out.push_back(points[n - 1]);
       along = points[n] - out.back();
@@ -35,8 +36,8 @@ std::vector<glm::dvec2> simplified(std::span<const glm::dvec2> points, double to
     if (length_px <= tolerance_px) continue;
     const glm::dvec2 aside = left_of(along) * (tolerance_px / length_px);
     const glm::dvec2 right = along - aside, left = along + aside;
-    if (!is_open || cross(rightmost, right) > 0) rightmost = right;
-    if (!is_open || cross(left, leftmost) > 0) leftmost = left;
+    if (!is_open || cross_product(rightmost, right) > 0) rightmost = right;
+    if (!is_open || cross_product(left, leftmost) > 0) leftmost = left;
     is_open = true;
   }
   if (points.size() > 1) out.push_back(points.back());

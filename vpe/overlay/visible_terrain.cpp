@@ -43,6 +43,8 @@ VisibleTerrain::VisibleTerrain(const Scene& scene)
     : scene_(scene),
       part_(core::drawn_part(scene.view)),
       size_(core::drawn_size(scene.view)),
+      focal_px_(core::focal_px(scene.view)),
+      principal_px_(glm::dvec2(scene.view.width, scene.view.height) * 0.5 + scene.view.principal_offset_px),
       is_flat_(scene.view.projection == core::Projection::kPerspective) {
   if (is_flat_) {
     // Equals core::pixel_ray(), with the terms that all pixels share computed once.
@@ -69,7 +71,7 @@ bool VisibleTerrain::is_ground(std::size_t pixel) const {
 }
 
 double VisibleTerrain::deviation_m(std::size_t pixel) const {
-  return scene_.shift_px * static_cast<double>(scene_.range_m[pixel]) / core::focal_px(scene_.view);
+  return scene_.shift_px * static_cast<double>(scene_.range_m[pixel]) / focal_px_;
 }
 
 double VisibleTerrain::noise_m(std::size_t pixel) const {
@@ -91,6 +93,15 @@ glm::dvec3 VisibleTerrain::point(int x, int y) const {
 }
 
 std::optional<glm::dvec2> VisibleTerrain::to_image(const glm::dvec3& point_m) const {
+  if (is_flat_) {
+    // Equals core::project(), with the terms that all points share computed once.
+    const mars::Axes& axes = scene_.view.camera.axes;
+    const glm::dvec3 to = point_m - scene_.view.camera.position_m;
+    const double forward = glm::dot(to, axes.forward);
+    if (!(forward > 0.0)) return std::nullopt;
+    const glm::dvec2 aside(glm::dot(to, axes.right), -glm::dot(to, axes.up));
+    return principal_px_ + aside * (focal_px_ / forward) - glm::dvec2(part_.x, part_.y);
+  }
   const core::Projected p = core::project(scene_.view, point_m);
   if (p.behind) return std::nullopt;
   return p.xy - glm::dvec2(part_.x, part_.y);

@@ -54,6 +54,8 @@ class VisibleTerrain {
   core::SubRectangle part_;
   glm::ivec2 size_;
   double nearest_m_;
+  double focal_px_;
+  glm::dvec2 principal_px_;
   // In a perspective view the ray through a pixel is along corner_ + x * right_ + y * down_.
   bool is_flat_;
   glm::dvec3 corner_{0, 0, 1};

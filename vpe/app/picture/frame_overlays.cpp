@@ -16,8 +16,10 @@
 namespace vpe::app {
 namespace {
 
-// Largest shift of an image's places by their heights' errors.
+// Largest shift of an image's places by their heights' errors, and the largest change of their distances, of which lines are hidden
+// by twice as much (overlay::kHiddenLineShare).
 constexpr double kDrapedShift_px = 0.05;
+constexpr double kDrapedDistanceShare = 2.5e-4;
 
 // Computes how far heights may be off, direction by direction, without being seen in an image.
 class HeightErrors {
@@ -40,7 +42,10 @@ class HeightErrors {
     // No point in the direction is nearer than the line through it, and no ground than the planet's relief allows.
     const double aside_m = glm::length(glm::cross(camera_m_, direction));
     const double nearest_m = std::max(aside_m, glm::length(direction * radius_m_ - camera_m_) - relief_m_);
-    return kDrapedShift_px * nearest_m / (px_per_rad_ * exaggeration_);
+    // The triangle of the camera and two heights has the area height * aside / 2, and two sides of at least the nearest distance.
+    const double by_shift_m =
+        kDrapedShift_px * nearest_m * nearest_m / (px_per_rad_ * std::max(aside_m, 1e-3 * nearest_m));
+    return std::min(by_shift_m, kDrapedDistanceShare * nearest_m) / exaggeration_;
   }
 
  private:

@@ -43,13 +43,18 @@ ImageSight::ImageSight(const VisibleTerrain& terrain)
 bool ImageSight::is_hidden(glm::dvec2 at_px, const glm::dvec3&, double distance_m) const {
   const auto x = static_cast<int>(std::floor(at_px.x));
   const auto y = static_cast<int>(std::floor(at_px.y));
+  const auto is_beyond = [&](int i, int j) {
+    const std::size_t p = terrain_.index(i, j);
+    if (!terrain_.is_ground(p)) return true;
+    const double reach_m =
+        static_cast<double>(terrain_.scene().range_m[p]) + terrain_.noise_m(p) + terrain_.deviation_m(p);
+    return distance_m > reach_m + kHiddenLineShare * distance_m;
+  };
+  // Most places are seen at their own pixels.
+  if (x >= 0 && y >= 0 && x < terrain_.width() && y < terrain_.height() && !is_beyond(x, y)) return false;
   for (int j = std::max(0, y - 1); j <= std::min(terrain_.height() - 1, y + 1); ++j) {
     for (int i = std::max(0, x - 1); i <= std::min(terrain_.width() - 1, x + 1); ++i) {
-      const std::size_t p = terrain_.index(i, j);
-      if (!terrain_.is_ground(p)) continue;
-      const double reach_m =
-          static_cast<double>(terrain_.scene().range_m[p]) + terrain_.noise_m(p) + terrain_.deviation_m(p);
-      if (distance_m <= reach_m + kHiddenLineShare * distance_m) return false;
+      if (!is_beyond(i, j)) return false;
     }
   }
   return true;
