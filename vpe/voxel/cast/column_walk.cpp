@@ -67,7 +67,7 @@ class GroupWalk : public HeightGridSource {
       return glm::dvec3(glm::dot(x, axes.right), glm::dot(x, axes.up), glm::dot(x, axes.out));
     };
     up_ = in_face(walk_.camera_.up);
-    for (int lane = 0; lane < kMaxLanes; ++lane) {
+    for (int lane = 0; lane < column_lanes(); ++lane) {
       const glm::dvec3 a = in_face(azimuth[std::min(lane, group_.columns - 1)]);
       const glm::dvec3 n = glm::cross(a, up_);
       for (int k = 0; k < 3; ++k) {
@@ -145,9 +145,9 @@ class GroupWalk : public HeightGridSource {
     });
   }
 
-  // Visits grids [i, i + size) x [j, j + size) of the current tile.
+  // Visits grids [i, i + size) x [j, j + size) of the current tile, which is not outside and not hidden.
   void visit_grids(const Cell& cell, int i, int j, int size, int per_side) {
-    if (done() || hidden(tile_) || outside(cell) || behind(cell)) return;
+    if (behind(cell)) return;
     if (size == 1) {
       grid_i_ = i;
       grid_j_ = j;
@@ -167,6 +167,7 @@ class GroupWalk : public HeightGridSource {
     const double um = mars::face_line(std::int64_t{key.i} * per_side + i + half, grids_level);
     const double vm = mars::face_line(std::int64_t{key.j} * per_side + j + half, grids_level);
     quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
+      if (done() || hidden(tile_) || outside(part)) return;
       visit_grids(part, east ? i + half : i, north ? j + half : j, half, per_side);
     });
   }

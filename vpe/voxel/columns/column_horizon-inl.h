@@ -28,11 +28,48 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class D, typename S>
 hn::Vec<D> load_lanes(const S* from, int lane0) {
   using T = hn::TFromD<D>;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (sizeof(T) < sizeof(S)) {
+    const hn::Half<D> half;
+    const hn::Rebind<S, hn::Half<D>> wide;
+    const auto part = [&](std::size_t lane) {
+      return hn::DemoteTo(half, hn::LoadU(wide, from + lane0 + lane));
+    };
+    return hn::Combine(D(), part(hn::Lanes(half)), part(0));
+  }
+#endif
   alignas(64) T values[kMaxLanes];
   for (std::size_t k = 0; k < hn::Lanes(D()); ++k)
     values[k] = static_cast<T>(from[lane0 + static_cast<int>(k)]);
   return hn::Load(D(), values);
 }
+
+// Holds the last event of each lane that has had one in a height grid.
+template <class D>
+struct Progress {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  M started;
+  V x, height;
+
+  // Returns the lanes for which line `at` does not lie before the last event. A path that begins at the camera's foot has no
+  // events before it.
+  template <bool kUp>
+  M outward(V at) const {
+    return hn::Or(kUp ? hn::Ge(at, x) : hn::Le(at, x), hn::Not(started));
+  }
+  // Returns this with a further event of some lanes.
+  Progress with(M lanes, V at, V ground) const {
+    return {hn::Or(started, lanes), hn::IfThenElse(lanes, at, x), hn::IfThenElse(lanes, ground, height)};
+  }
+  // Returns an event with what lies before it. Nothing of this grid lies before the first one of a lane, so rows are resolved at the
+  // event itself.
+  FacetEvent<D> event(V at, V ground) const {
+    return {at, ground, hn::IfThenElse(started, x, at),
+            hn::IfThenElse(started, height, hn::Sub(ground, hn::Set(D(), T(1))))};
+  }
+};
 
 // Holds how far the lanes that cross a height grid by the same family of lines in the same direction are resolved, and what they
 // met last. A lane starts with its first event in the grid, and is alive while it has unresolved rows.
@@ -60,9 +97,7 @@ class Horizon {
     row_ = load_lanes<D>(group.row, lane0);
     end_ = load_lanes<D>(group.row_end, lane0);
     active_ = hn::Eq(load_lanes<D>(paths.kind, lane0), hn::Set(d, static_cast<T>(kind)));
-    started_ = hn::MaskFromVec(hn::Zero(d));
-    last_x_ = hn::Zero(d);
-    last_h_ = hn::Zero(d);
+    progress_ = {hn::MaskFromVec(hn::Zero(d)), hn::Zero(d), hn::Zero(d)};
     update_slope();
   }
   // The writer of runs refers to this.
@@ -73,13 +108,8 @@ class Horizon {
   bool any() const { return !hn::AllFalse(D(), alive_); }
   M active() const { return active_; }  // the lanes of the family and direction
   M alive() const { return alive_; }
-  M started() const { return started_; }
-  V last_x() const { return last_x_; }  // the last event of each lane
-  V last_height() const { return last_h_; }
-  void set_last(V x, V height) {
-    last_x_ = x;
-    last_h_ = height;
-  }
+  const Progress<D>& progress() const { return progress_; }
+  void set_progress(const Progress<D>& progress) { progress_ = progress; }
 
   // Return what rest_at() is made of. Both change with each row that is resolved.
   V base_s0() const { return base_s0_; }
@@ -89,43 +119,17 @@ class Horizon {
 
   M in_front(V x) const { return hn::Gt(hn::MulAdd(terms_.sigma1, x, terms_.sigma0), hn::Zero(D())); }
 
-  // Returns the lanes for which line x does not lie before the last event. A path that begins at the camera's foot has no
-  // events before it.
-  template <bool kUp>
-  M outward(V x) const {
-    const M beyond = kUp ? hn::Ge(x, last_x_) : hn::Le(x, last_x_);
-    return hn::Or(beyond, hn::Not(started_));
-  }
-
   // Starts lanes at line x, on ground of this height.
-  void start(M lanes, V x, V height) {
-    started_ = lanes;
-    set_last(x, height);
-  }
+  void start(M lanes, V x, V height) { progress_ = {lanes, x, height}; }
 
-  // Records a path's first event. Nothing of this grid lies before it, so rows are resolved at the event
-  // itself.
+  // Begins the paths of lanes at line x: nothing of this grid lies before it that they could show.
   void begin_path(M lanes, V x, V height) {
-    const D d;
-    last_x_ = hn::IfThenElse(lanes, x, last_x_);
-    last_h_ = hn::IfThenElse(lanes, hn::Sub(height, hn::Set(d, T(1))), last_h_);
-    started_ = hn::Or(started_, lanes);
-  }
-
-  // Resolves rows of the lanes whose event reaches their next row, and makes it the last one of all these lanes.
-  void take_event(M lanes, V x, V height) {
     const D d;
     const V rest = hn::Add(height, rest_at(x));
     const M reached = hn::And(hn::And(lanes, alive_), hn::Ge(rest, hn::Zero(d)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, {x, height, last_x_, last_h_});
-    last_x_ = hn::IfThenElse(lanes, x, last_x_);
-    last_h_ = hn::IfThenElse(lanes, height, last_h_);
-  }
-
-  // Does the same, and starts lanes where needed.
-  void process_event(M lanes, V x, V height) {
-    begin_path(hn::AndNot(started_, lanes), x, height);
-    take_event(lanes, x, height);
+    const V below = hn::Sub(height, hn::Set(d, T(1)));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, {x, height, x, below});
+    progress_ = progress_.with(lanes, x, height);
   }
 
   // Resolves the rows up to the slope of an event: they show the facet between the event before it and this one.
@@ -165,8 +169,8 @@ class Horizon {
   PathTerms<D> terms_;
   RunWriter<D, kKind> runs_;
   V row_, end_, slope_, base_s0_, base_s1_;
-  M active_, alive_, started_;
-  V last_x_, last_h_;
+  M active_, alive_;
+  Progress<D> progress_;
 };
 
 }  // namespace

@@ -38,8 +38,8 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
     foot.y = (up.y / up.z - f.v0) / f.dv;
   }
   unsigned kinds = 0;
-  for (double kind : paths.kind) {
-    if (kind >= 0) kinds |= 1U << static_cast<int>(kind);
+  for (int lane = 0; lane < kPathLanes; ++lane) {
+    if (paths.kind[lane] >= 0) kinds |= 1U << static_cast<int>(paths.kind[lane]);
   }
   for (int kind = 0; kind < 2 * kFamilies; ++kind) {
     if (((kinds >> kind) & 1U) == 0) continue;
@@ -47,7 +47,7 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
     const bool outward_up = (kind & 1) != 0;
     double from = kHuge;
     double to = -kHuge;
-    for (int lane = 0; lane < kMaxLanes; ++lane) {
+    for (int lane = 0; lane < kPathLanes; ++lane) {
       if (paths.kind[lane] != kind) continue;
       from = std::min(from, paths.from[lane]);
       to = std::max(to, paths.to[lane]);

@@ -38,7 +38,12 @@ class PathReader {
 
   // position0, position1: the lanes' position at line 0 and its change from line to line.
   PathReader(const HeightGridLines<T>& lines, LineFamily family, int intervals, V position0, V position1)
-      : lines_(lines), family_(family), n_(intervals), position0_(position0), position1_(position1) {
+      : lines_(lines),
+        family_(family),
+        n_(intervals),
+        per_line_(hn::Set(D(), T(family == LineFamily::kDiagonals ? 1 : 0))),
+        position0_(position0),
+        position1_(position1) {
     const D d;
     // The limit keeps the product with 0 from becoming NaN.
     const V limit = hn::Set(d, T(1e30));
@@ -200,16 +205,32 @@ class PathReader {
 
   static V height_on(const Line& line) { return hn::MulAdd(line.part, hn::Sub(line.high, line.low), line.low); }
 
-  M on_line(int k, const Line& line) const {
-    const D d;
-    return hn::And(hn::Ge(line.whole, hn::Set(d, first_position(k))),
-                   hn::Lt(line.whole, hn::Set(d, last_position(k))));
+  // Returns the lanes whose position on line k is between two posts.
+  M on_line(V k, const Line& line) const {
+    const Span span = positions(k);
+    return hn::And(hn::Ge(line.whole, span.first), hn::Lt(line.whole, span.last));
+  }
+  // Returns the lanes for which line k has a post at this position.
+  M has_post(V k, V position) const {
+    const Span span = positions(k);
+    return hn::And(hn::Ge(position, span.first), hn::Le(position, span.last));
   }
 
  private:
+  // Holds the first and the last position of posts on a line, the same as first_position() and last_position().
+  struct Span {
+    V first, last;
+  };
+  Span positions(V k) const {
+    const V shift = hn::Mul(k, per_line_);
+    const V zero = hn::Zero(D());
+    return {hn::Max(zero, shift), hn::Add(hn::Set(D(), static_cast<T>(n_)), hn::Min(zero, shift))};
+  }
+
   const HeightGridLines<T>& lines_;
   LineFamily family_;
   int n_;
+  V per_line_;  // by how much the first position rises from line to line: 1 on diagonals, else 0
   V position0_, position1_, per_position1_, per_rest_;
 };
 

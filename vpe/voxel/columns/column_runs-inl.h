@@ -34,6 +34,14 @@ struct FacetEvent {
   hn::Vec<D> last_x, last_height;
 };
 
+// Returns the first event for some lanes, and the second one for the others.
+template <class D>
+FacetEvent<D> merge(hn::Mask<D> lanes, const FacetEvent<D>& first, const FacetEvent<D>& second) {
+  return {hn::IfThenElse(lanes, first.x, second.x), hn::IfThenElse(lanes, first.height, second.height),
+          hn::IfThenElse(lanes, first.last_x, second.last_x),
+          hn::IfThenElse(lanes, first.last_height, second.last_height)};
+}
+
 // Holds what is affine along the lanes' paths through a height grid (Paths).
 template <class D>
 struct PathTerms {

@@ -164,8 +164,9 @@ class HorizonWalk {
     if (at_low_.low < reader_.first_position(low) || at_low_.high >= reader_.last_position(low)) return false;
     if (at_high_.low < reader_.first_position(high) || at_high_.high >= reader_.last_position(high))
       return false;
-    const M ready = hn::And(horizon_.started(), hn::And(horizon_.in_front(hn::Set(d, static_cast<T>(low))),
-                                                        horizon_.in_front(hn::Set(d, static_cast<T>(high)))));
+    const M ready =
+        hn::And(horizon_.progress().started, hn::And(horizon_.in_front(hn::Set(d, static_cast<T>(low))),
+                                                     horizon_.in_front(hn::Set(d, static_cast<T>(high)))));
     return hn::AllFalse(d, hn::AndNot(ready, horizon_.alive()));
   }
 
@@ -174,10 +175,8 @@ class HorizonWalk {
     const D d;
     const typename PathReader<D>::Line line = reader_.gather(k);
     const V x = hn::Set(d, static_cast<T>(k));
-    const M here = hn::And(horizon_.active(), hn::And(reader_.on_line(k, line), horizon_.in_front(x)));
-    const V height = reader_.height_on(line);
-    horizon_.begin_path(here, x, height);
-    horizon_.take_event(here, x, height);
+    const M here = hn::And(horizon_.active(), hn::And(reader_.on_line(x, line), horizon_.in_front(x)));
+    horizon_.begin_path(here, x, reader_.height_on(line));
   }
 
   static Reach reach_for(T width) {
@@ -198,41 +197,61 @@ class HorizonWalk {
     return reach_for(std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - window_from_);
   }
 
-  // Walks a block in which lanes may enter or leave the grid.
+  // Walks a block in which lanes may enter or leave the grid. Both events of a line are told together, so that rows are resolved
+  // in one place.
   template <bool kUp, Reach kReach>
   void step_masked(int first, int last) {
     const D d;
+    const V zero = hn::Zero(d);
+    const V one = hn::Set(d, T(1));
     const int base = PathReader<D>::window_base(window_from_);
-    const auto read = [&](int k) {
-      return reader_.template read<kReach>(reader_.line_number(k), base, reader_.posts(k));
-    };
-    typename PathReader<D>::Line line = read(first);
-    for (int k = first; k != last; k += kUp ? 1 : -1) {
-      const int next_k = kUp ? k + 1 : k - 1;
-
-      const typename PathReader<D>::Line next = read(next_k);
-      const int low_k = kUp ? k : next_k;
+    const auto read = [&](V x, int k) { return reader_.template read<kReach>(x, base, reader_.posts(k)); };
+    constexpr int kStep = kUp ? 1 : -1;
+    const M active = horizon_.active();
+    Progress<D> done = horizon_.progress();
+    V last_line = reader_.line_number(first);
+    typename PathReader<D>::Line line = read(last_line, first);
+    for (int k = first + kStep; k != last + kStep; k += kStep) {
+      const V x = hn::Add(last_line, hn::Set(d, T(kStep)));
+      const typename PathReader<D>::Line next = read(x, k);
+      const V low_line = kUp ? last_line : x;
+      const V high_line = kUp ? x : last_line;
       const auto& lower = kUp ? line : next;
       const auto& upper = kUp ? next : line;
-      const auto c = reader_.between(reader_.line_number(low_k), lower, upper);
+      const auto c = reader_.between(low_line, lower, upper);
       // Both ends of the edge must be posts of this grid.
-      const V one = hn::Set(d, T(1));
-      const V low_post = hn::IfThenElse(c.other, hn::Add(lower.whole, one), lower.whole);
       const V high_post = hn::Add(lower.whole, one);
-      M here = hn::And(hn::Ge(low_post, hn::Set(d, reader_.first_position(low_k))),
-                       hn::Le(low_post, hn::Set(d, reader_.last_position(low_k))));
-      here = hn::And(here, hn::And(hn::Ge(high_post, hn::Set(d, reader_.first_position(low_k + 1))),
-                                   hn::Le(high_post, hn::Set(d, reader_.last_position(low_k + 1)))));
-      here = hn::And(here, hn::And(horizon_.active(), horizon_.in_front(c.x)));
+      const V low_post = hn::IfThenElse(c.other, high_post, lower.whole);
+      const M edge = hn::And(reader_.has_post(low_line, low_post), reader_.has_post(high_line, high_post));
       // A path that begins at the camera's foot has no events before it.
-      here = hn::And(here, horizon_.template outward<kUp>(c.x));
-      horizon_.process_event(here, c.x, c.height);
-      const V x = hn::Set(d, static_cast<T>(next_k));
-      const M there = hn::And(hn::And(horizon_.active(), reader_.on_line(next_k, next)),
-                              hn::And(horizon_.in_front(x), horizon_.template outward<kUp>(x)));
-      horizon_.process_event(there, x, reader_.height_on(next));
+      const M here =
+          hn::And(hn::And(edge, active), hn::And(horizon_.in_front(c.x), done.template outward<kUp>(c.x)));
+      const V height = reader_.height_on(next);
+      const Progress<D> at_edge = done.with(here, c.x, c.height);
+      const M there = hn::And(hn::And(active, reader_.on_line(x, next)),
+                              hn::And(horizon_.in_front(x), at_edge.template outward<kUp>(x)));
+      const V rest_c = hn::Add(c.height, horizon_.rest_at(c.x));
+      const V rest = hn::Add(height, horizon_.rest_at(x));
+      const M at_c = hn::And(here, hn::Ge(rest_c, zero));
+      M lanes = hn::And(horizon_.alive(), hn::Or(at_c, hn::And(there, hn::Ge(rest, zero))));
+      if (!hn::AllFalse(d, lanes)) {
+        const FacetEvent<D> at_line = at_edge.event(x, height);
+        M first_lanes = hn::And(lanes, at_c);
+        FacetEvent<D> event = merge<D>(first_lanes, done.event(c.x, c.height), at_line);
+        for (;;) {
+          horizon_.resolve(lanes, event);
+          lanes = hn::And(hn::And(first_lanes, there),
+                          hn::And(horizon_.alive(), hn::Ge(hn::Add(height, horizon_.rest_at(x)), zero)));
+          if (hn::AllFalse(d, lanes)) break;
+          first_lanes = hn::MaskFromVec(zero);
+          event = at_line;
+        }
+      }
+      done = at_edge.with(there, x, height);
+      last_line = x;
       line = next;
     }
+    horizon_.set_progress(done);
   }
 
   // Walks a block, or a part of it, that all lanes cross.
@@ -260,8 +279,8 @@ class HorizonWalk {
     V base_s0 = horizon_.base_s0();
     V base_s1 = horizon_.base_s1();
     M alive = horizon_.alive();
-    V last_h = horizon_.last_height();
-    V last_event_x = horizon_.last_x();
+    V last_h = horizon_.progress().height;
+    V last_event_x = horizon_.progress().x;
     typename PathReader<D>::Line line = read(last_x, first);
     for (int k = first + kStep; k != last + kStep; k += kStep) {
       from += step_from;
@@ -277,9 +296,8 @@ class HorizonWalk {
         // Lanes that the edge between the lines reaches first, and the others at the line.
         M lanes = reached;
         M first_lanes = hn::And(reached, hn::Ge(rest_c, zero));
-        FacetEvent<D> event{hn::IfThenElse(first_lanes, c.x, x), hn::IfThenElse(first_lanes, c.height, height),
-                            hn::IfThenElse(first_lanes, last_event_x, c.x),
-                            hn::IfThenElse(first_lanes, last_h, c.height)};
+        FacetEvent<D> event =
+            merge<D>(first_lanes, {c.x, c.height, last_event_x, last_h}, {x, height, c.x, c.height});
         for (;;) {
           horizon_.resolve(lanes, event);
           base_s0 = horizon_.base_s0();
@@ -297,7 +315,7 @@ class HorizonWalk {
       last_h = height;
       line = next;
     }
-    horizon_.set_last(last_event_x, last_h);
+    horizon_.set_progress({horizon_.progress().started, last_event_x, last_h});
   }
 
   PathReader<D> reader_;
