@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,13 +17,23 @@ inline double median_of(std::vector<double> values) {
   return *middle;
 }
 
+enum class Clock {
+  kWall,
+  kProcessor,  // of all threads of the process
+};
+
 // Prints "| name | median of a, ms | median of b / a in the same round (least..largest) |". The first round loads and does not count.
 inline void compare_rounds(const std::string& name, const std::function<void()>& a,
-                           const std::function<void()>& b, int rounds) {
-  const auto once_ms = [](const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
+                           const std::function<void()>& b, int rounds, Clock clock = Clock::kWall) {
+  const auto now_ms = [clock] {
+    if (clock == Clock::kProcessor) return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  };
+  const auto once_ms = [&now_ms](const std::function<void()>& work) {
+    const double start_ms = now_ms();
     work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return now_ms() - start_ms;
   };
   std::vector<double> times;
   std::vector<double> ratios;

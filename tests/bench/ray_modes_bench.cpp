@@ -1,14 +1,16 @@
 // Compares modes of the ray backend: the gain of coherence (columns against single rays down the same pyramids
-// and against fixed steps), the gain of coarser cells, and the cost of roll, pitch and a larger grid.
+// and against fixed steps), the gain of coarser cells and of rings of lines, and the cost of roll, pitch and a larger grid.
 // docs/measurements/rays.md has the figures.
 //
-//   ray_modes_bench DIR [ROUNDS]
+//   ray_modes_bench DIR [ROUNDS] [NAME]
 //
-// DIR holds the planets of ray_bench, or receives them.
+// DIR holds the planets of ray_bench, or receives them. With NAME, only rows whose name holds it are measured. Rows of rings are
+// processor time of one thread.
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <string>
 
 #include "mars/geodesy/pose.h"
 #include "tests/bench/compare_rounds.h"
@@ -58,8 +60,12 @@ struct Run {
   RangeOptions options;
 };
 
+std::string wanted;  // part of the names of rows to measure
+
 // Compares two casts (compare_rounds.h). Each allocates its image, as its peer does.
-void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base::ThreadPool& pool) {
+void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base::ThreadPool& pool,
+             bench::Clock clock = bench::Clock::kWall) {
+  if (std::string(name).find(wanted) == std::string::npos) return;
   const auto cast = [&pool](const Run& run) {
     return [&run, &pool] {
       std::vector<float> out(static_cast<std::size_t>(run.view.width) *
@@ -67,7 +73,28 @@ void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base
       run.scene->caster.cast(run.view, run.options, pool, out);
     };
   };
-  bench::compare_rounds(name, cast(a), cast(b), rounds);
+  bench::compare_rounds(name, cast(a), cast(b), rounds, clock);
+}
+
+// Compares one set of lines on each side of the vertical's vanishing point with rings of them.
+void compare_rings(Scene& scene, int rounds) {
+  vpe::base::ThreadPool alone(1);
+  for (const bool is_nearest : {false, true}) {
+    for (const double pitch : {-10.0, -30.0, -60.0, -90.0}) {
+      for (const double roll : {0.0, 45.0}) {
+        RangeOptions rings = kExact;
+        rings.sectors.is_nearest = is_nearest;
+        RangeOptions one = rings;
+        one.sectors.most_rings = 1;
+        const View view = scene.view(1920, 1080, 36, pitch, roll);
+        const std::string name = "1920x1080, " + std::string(is_nearest ? "nearest" : "exact") + ", " +
+                                 std::to_string(static_cast<int>(pitch)) + ", roll " +
+                                 std::to_string(static_cast<int>(roll)) + ": rings; one";
+        compare(name.c_str(), {&scene, view, rings}, {&scene, view, one}, rounds, alone,
+                bench::Clock::kProcessor);
+      }
+    }
+  }
 }
 
 void run(const std::string& dir, int rounds) {
@@ -119,16 +146,18 @@ void run(const std::string& dir, int rounds) {
               {&small, small.view(1920, 1080, 36, pitch, 0), options}, rounds, pool);
     }
   }
+  compare_rings(small, rounds);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "ray_modes_bench DIR [ROUNDS]\n");
+    std::fprintf(stderr, "ray_modes_bench DIR [ROUNDS] [NAME]\n");
     return 2;
   }
   try {
+    if (argc > 3) wanted = argv[3];
     run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 9);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ray_modes_bench: %s\n", error.what());

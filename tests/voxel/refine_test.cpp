@@ -142,4 +142,23 @@ TEST(HintsFromRow, AreTheSamplesOnEitherSide) {
   }
 }
 
+TEST(NearestInColumns, AreTheSamplesNearestToPixels) {
+  constexpr int kLines = 50;
+  for (const std::size_t count : {std::size_t{1}, std::size_t{4}, std::size_t{37}}) {
+    std::vector<double> maps;
+    for (std::size_t k = 0; k < count; ++k) {
+      maps.push_back(1.0 + 0.05 * static_cast<double>(k));
+      maps.push_back(-3.0 + 1.5 * static_cast<double>(k));
+    }
+    std::vector<std::int32_t> index(count + 1, -1);
+    nearest_in_columns(kLines, maps.data(), 7.5, 2.25, 2.0, static_cast<int>(count), index.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      const double line = (maps[2 * k] * 7.5 + maps[2 * k + 1] - 2.25) * 2.0;
+      const double nearest = std::clamp(std::floor(line + 0.5), 0.0, kLines - 1.0);
+      EXPECT_EQ(index[k], static_cast<int>(k) * kLines + static_cast<int>(nearest)) << k << " of " << count;
+    }
+    EXPECT_EQ(index[count], -1);
+  }
+}
+
 }  // namespace

@@ -193,7 +193,7 @@ std::string draw_sectors(const Scene& scene, const std::string& file) {
                                "Every 40th line is drawn. Left out and not counted:",
                                "lines beyond a diagonal, for the pixels next to V.",
                                "",
-                               "Thick: the row or column farthest from V,",
+                               "Thick: the row or column of a sector farthest from V,",
                                "where lines are 1 px apart."};
   for (int k = 0; k < 8; ++k) out.text(corner + glm::dvec2(0, 20 * k), lines[k]);
   constexpr bool kBoth[] = {false, true};

@@ -24,7 +24,7 @@ std::size_t index_of(int row, int width, int x) {
 void cast_sectors(const core::View& view, const ColumnWalk& walk, int rays, ScratchPool& scratches,
                   base::ThreadPool& pool, SectorSamples& samples, std::span<float> range_m) {
   const core::View fine = with_finer_pixels(view, rays);
-  const SectorPlan plan(fine, walk.camera().up, rays);
+  const SectorPlan plan(fine, walk.camera().up, rays, 1);
   samples.resize(std::max(samples.size(), plan.sectors().size()));
   std::vector<ColumnBatch> batches;
   for (std::size_t f = 0; f < plan.sectors().size(); ++f) {

@@ -1,8 +1,12 @@
 #include "vpe/voxel/cast/nearest_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include "vpe/voxel/columns/refine.h"
 
 namespace vpe::voxel {
 
@@ -70,8 +74,9 @@ void NearestSamples::upright(int row, int begin, int end, float* out, std::vecto
   const double rate = map.scale * rays_ / sector->spacing;
   const float* const from = samples_of(*sector) + std::ptrdiff_t{step} * sector->lines;
   const double last = sector->lines - 1;
-  const auto [low, high] = std::minmax(first + rate * begin, first + rate * (end - 1));
-  if (low >= 0 && high < last + 1) {
+  const double left = first + rate * begin;
+  const double right = first + rate * (end - 1);
+  if (std::min(left, right) >= 0 && std::max(left, right) < last + 1) {
     for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(first + rate * x)];
   } else {
     for (int x = begin; x < end; ++x) out[x] = from[static_cast<int>(std::clamp(first + rate * x, 0.0, last))];
@@ -79,14 +84,40 @@ void NearestSamples::upright(int row, int begin, int end, float* out, std::vecto
 }
 
 void NearestSamples::beside(int row, int begin, int end, float* out, std::vector<int>* missed) const {
-  if (begin >= end) return;
-  const ViewSector* sector = plan_.sector_of(side(begin, row / rays_));
+  while (begin < end) {
+    const SectorPlan::Side at = side(begin, row / rays_);
+    const int count = plan_.steps_alike(at, rays_ * (part_.x + begin), end - begin);
+    beside(plan_.sector_of(at), row, begin, begin + count, out, missed);
+    begin += count;
+  }
+}
+
+void NearestSamples::beside(const ViewSector* sector, int row, int begin, int end, float* out,
+                            std::vector<int>* missed) const {
   if (sector == nullptr) return miss(begin, end, out, missed);
   const float* const from = samples_of(*sector);
   const double y = rays_ * part_.y + row + 0.5;
-  const double last = sector->lines - 1;
   const double per_spacing = 1.0 / sector->spacing;
   const int first = rays_ * part_.x + rays_ / 2 - sector->first_step;
+  if (rays_ == 1 && missed != nullptr) {
+    const int inner = std::clamp(-first, begin, end);
+    const int inner_end = std::clamp(sector->steps - first, inner, end);
+    miss(begin, inner, out, missed);
+    miss(inner_end, end, out, missed);
+    if (inner == inner_end) return;
+    static_assert(sizeof(ViewSector::Map) == 2 * sizeof(double));
+    constexpr int kMost = 128;
+    std::array<std::int32_t, kMost> index;
+    for (int x = inner; x < inner_end; x += kMost) {
+      const int count = std::min(kMost, inner_end - x);
+      nearest_in_columns(sector->lines, &sector->maps[static_cast<std::size_t>(first + x)].scale, y,
+                         sector->first_line, per_spacing, count, index.data());
+      const float* const some = from + std::ptrdiff_t{first + x} * sector->lines;
+      for (int k = 0; k < count; ++k) out[x + k] = some[index[static_cast<std::size_t>(k)]];
+    }
+    return;
+  }
+  const double last = sector->lines - 1;
   for (int x = begin; x < end; ++x) {
     const int wanted = first + rays_ * x;
     const int step = std::clamp(wanted, 0, sector->steps - 1);

@@ -15,7 +15,7 @@ namespace vpe::voxel {
 class NearestSamples {
  public:
   // `part` is the drawn part of the image, and `plan` that of the view whose pixels are 1 / rays as wide and as tall: each row of
-  // pixels has `rays` rows of rays. `plan` and `samples` must outlive this.
+  // pixels has `rays` rows of rays; with several, plan must have one ring a side. `plan` and `samples` must outlive this.
   NearestSamples(const SectorPlan& plan, const SectorSamples& samples, const core::SubRectangle& part,
                  int rays = 1);
 
@@ -34,6 +34,8 @@ class NearestSamples {
   const float* samples_of(const ViewSector& sector) const;
   void upright(int row, int begin, int end, float* out, std::vector<int>* missed) const;
   void beside(int row, int begin, int end, float* out, std::vector<int>* missed) const;
+  void beside(const ViewSector* sector, int row, int begin, int end, float* out,
+              std::vector<int>* missed) const;
 
   const SectorPlan& plan_;
   const SectorSamples& samples_;

@@ -74,6 +74,38 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const core::SubRectangle
   cast_columns(batches, walk, scratches, pool);
 }
 
+void SectorCaster::prefetch_beside(const SectorPlan& plan, const core::SubRectangle& block) const {
+  const auto side = [&](int x, int y) { return plan.side_of(x + 0.5, y + 0.5); };
+  const int last_x = block.x + block.width - 1;
+  const int last_y = block.y + block.height - 1;
+  const SectorPlan::Side corner = side(block.x, block.y);
+  const auto is_alike = [&](const SectorPlan::Side& other) {
+    return other.upright && other.forward == corner.forward;
+  };
+  // Upright samples of a row lie side by side.
+  if (corner.upright && is_alike(side(last_x, block.y)) && is_alike(side(block.x, last_y)) &&
+      is_alike(side(last_x, last_y)))
+    return;
+  for (int x = block.x; x <= last_x; ++x) {
+    const SectorPlan::Side top = side(x, block.y);
+    const SectorPlan::Side at = top.upright ? side(x, last_y) : top;
+    const ViewSector* const sector = at.upright ? nullptr : plan.sector_of(at);
+    if (sector == nullptr || x < sector->first_step || x >= sector->first_step + sector->steps) continue;
+    const auto step = static_cast<std::size_t>(x - sector->first_step);
+    const auto line = [&](int y) {
+      const double place = static_cast<double>(sector->line_scale[step]) * (y + 0.5 - sector->origin) +
+                           static_cast<double>(sector->line_shift[step]);
+      return static_cast<std::ptrdiff_t>(std::clamp(place, 0.0, sector->lines - 1.0));
+    };
+    const auto [low, high] = std::minmax({line(block.y), line(last_y)});
+    const float* const from = samples_[static_cast<std::size_t>(sector - plan.sectors().data())].data() +
+                              static_cast<std::ptrdiff_t>(step) * sector->lines;
+    constexpr std::ptrdiff_t kCacheLine = 16;
+    for (std::ptrdiff_t k = low; k < high + kCacheLine; k += kCacheLine)
+      __builtin_prefetch(from + std::min(k, high));
+  }
+}
+
 void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                               int last_pixel, float* a, float* b, float* share) const {
   const double y = part.y + row + 0.5;
@@ -101,9 +133,8 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
       for (int k = span.begin; k < span.end; ++k) none(k);
     }
   }
-  const auto beside = [&](int begin, int end) {
-    if (begin >= end) return;
-    const ViewSector* sector = plan.sector_of(plan.side_of(part.x + begin + 0.5, y));
+  // Sets pixels whose samples are of one sector.
+  const auto beside = [&](const ViewSector* sector, int begin, int end) {
     if (sector == nullptr) {
       for (int k = begin; k < end; ++k) none(k);
       return;
@@ -128,8 +159,16 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
     copy(first, begin, first);
     copy(last - 1, last, end);
   };
-  beside(first_pixel, span.begin);
-  beside(span.end, last_pixel);
+  const auto all_beside = [&](int begin, int end) {
+    while (begin < end) {
+      const SectorPlan::Side side = plan.side_of(part.x + begin + 0.5, y);
+      const int count = plan.steps_alike(side, part.x + begin, end - begin);
+      beside(plan.sector_of(side), begin, begin + count);
+      begin += count;
+    }
+  };
+  all_beside(first_pixel, span.begin);
+  all_beside(span.end, last_pixel);
 }
 
 void SectorCaster::take_nearest(const core::View& view, const SectorPlan& plan,
@@ -145,6 +184,8 @@ void SectorCaster::take_nearest(const core::View& view, const SectorPlan& plan,
     const int last = std::min(first + kTaskRows, pixels.y - part.y + pixels.height);
     const int end_column = pixels.x - part.x + pixels.width;
     for (int begin = pixels.x - part.x; begin < end_column; begin += kTaskColumns) {
+      prefetch_beside(
+          plan, {part.x + begin, part.y + first, std::min(kTaskColumns, end_column - begin), last - first});
       for (int row = first; row < last; ++row) {
         float* const out =
             range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width);
@@ -172,7 +213,7 @@ void SectorCaster::cast(const core::View& view, const SectorForm& form, const Co
   const core::SubRectangle part = core::drawn_part(view);
   const core::SubRectangle pixels = only.width > 0 ? in_whole_blocks(only, part) : part;
   if (pixels.width <= 0 || pixels.height <= 0) return;
-  const SectorPlan plan(view, walk.camera().up, form.spacing_px);
+  const SectorPlan plan(view, walk.camera().up, form.spacing_px, form.most_rings);
   cast_sectors(plan, pixels, walk, scratches, pool);
   if (form.is_nearest) return take_nearest(view, plan, pixels, walk, scratches, single_rays, pool, range_m);
   const mars::Axes& axes = view.camera.axes;
@@ -193,6 +234,7 @@ void SectorCaster::cast(const core::View& view, const SectorForm& form, const Co
     // In blocks, so that neighbouring rows find their samples and height grids in the caches.
     for (int begin = first_column; begin < first_column + pixels.width; begin += kTaskColumns) {
       const int end = std::min(begin + kTaskColumns, first_column + pixels.width);
+      prefetch_beside(plan, {part.x + begin, part.y + first, end - begin, last - first});
       for (int row = first; row < last; ++row) {
         find_hints(plan, part, row, begin, end, hints.a.data(), hints.b.data(), hints.share.data());
         float* const out =

@@ -24,6 +24,9 @@ struct SectorForm {
   bool is_nearest = false;
   // Distance between columns where they are farthest apart, in pixels. Smaller: finds narrower ridges, slower.
   double spacing_px = 1;
+  // The most sets of lines (rings) on one side of the vertical's vanishing point, where one set would be crowded. More: fewer samples, none
+  // of them farther from a pixel than distance_px().
+  int most_rings = SectorPlan::kMostRings;
   // Returns the largest distance in the image between a pixel's centre and the ray whose range it has.
   double distance_px() const { return is_nearest ? 0.5 * spacing_px : 0; }
   bool operator==(const SectorForm&) const = default;
@@ -62,6 +65,9 @@ class SectorCaster {
   void take_nearest(const core::View& view, const SectorPlan& plan, const core::SubRectangle& pixels,
                     const ColumnWalk& walk, ScratchPool& scratches, const SingleRays* single_rays,
                     base::ThreadPool& pool, std::span<float> range_m) const;
+  // Asks for the samples beside V of a block of pixels of the full image. They lie far apart in memory, and would be waited for one
+  // after the other.
+  void prefetch_beside(const SectorPlan& plan, const core::SubRectangle& block) const;
   // Finds the samples on either side of pixels [first_pixel, last_pixel) of a row of the drawn part.
   void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                   int last_pixel, float* a, float* b, float* share) const;

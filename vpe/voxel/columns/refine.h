@@ -67,4 +67,9 @@ void hints_from_row(const float* samples, int sample_count, double first, double
 void hints_from_columns(const float* samples, int lines, const float* scale, const float* shift, float y,
                         int count, float* a, float* b, float* share);
 
+// Writes to index[k] which sample of row k of samples[k * lines ...] is the nearest to pixel k: with a scale and a shift for each
+// pixel, side by side in `maps`, that at (scale s + shift - first_line) per_spacing, rounded.
+void nearest_in_columns(int lines, const double* maps, double s, double first_line, double per_spacing,
+                        int count, std::int32_t* index);
+
 }  // namespace vpe::voxel

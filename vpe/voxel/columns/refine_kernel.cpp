@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "vpe/voxel/columns/nearest_rays-inl.h"
 #include "vpe/voxel/columns/refine_hints-inl.h"
 #include "vpe/voxel/columns/row_pixels-inl.h"
 
@@ -19,6 +20,7 @@ namespace vpe::voxel {
 HWY_EXPORT(refine_row_kernel);
 HWY_EXPORT(hints_from_row_kernel);
 HWY_EXPORT(hints_from_columns_kernel);
+HWY_EXPORT(nearest_in_columns_kernel);
 
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
                 FacetSource& exact_source, float* range, std::vector<int>& unresolved) {
@@ -31,6 +33,10 @@ void hints_from_row(const float* samples, int sample_count, double first, double
 void hints_from_columns(const float* samples, int lines, const float* scale, const float* shift, float y,
                         int count, float* a, float* b, float* share) {
   HWY_DYNAMIC_DISPATCH(hints_from_columns_kernel)(samples, lines, scale, shift, y, count, a, b, share);
+}
+void nearest_in_columns(int lines, const double* maps, double s, double first_line, double per_spacing,
+                        int count, std::int32_t* index) {
+  HWY_DYNAMIC_DISPATCH(nearest_in_columns_kernel)(lines, maps, s, first_line, per_spacing, count, index);
 }
 
 }  // namespace vpe::voxel

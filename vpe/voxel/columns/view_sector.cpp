@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "vpe/voxel/columns/sector_rings.h"
+
 namespace vpe::voxel {
 
 namespace {
@@ -19,7 +21,7 @@ constexpr double kRounding = 1e-14;
 
 }  // namespace
 
-SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px)
+SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px, int most_rings)
     : view_(view),
       part_(core::drawn_part(view)),
       up_(up),
@@ -39,7 +41,7 @@ SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spac
     vy_ = -vy_;
   }
   for (const bool upright : {true, false}) {
-    for (const bool forward : {true, false}) add(upright, forward);
+    for (const bool forward : {true, false}) add(upright, forward, most_rings);
   }
 }
 
@@ -47,7 +49,24 @@ SectorPlan::Side SectorPlan::side_of(double x, double y) const {
   const double qx = x * vw_ - vx_;
   const double qy = y * vw_ - vy_;
   const bool upright = std::abs(qx) <= std::abs(qy);
-  return {upright, upright ? qy >= 0 : qx >= 0};
+  Side side{upright, upright ? qy >= 0 : qx >= 0};
+  const Rings& rings = rings_of(side);
+  const double t = upright ? y : x;
+  // Steps beyond those of all rings belong to the nearest one.
+  const auto is_nearer = [&](const ViewSector& sector) {
+    return side.forward ? t < sector.first_step : t > sector.first_step + sector.steps;
+  };
+  while (side.ring + 1 < rings.count && is_nearer(*sector_of(side))) ++side.ring;
+  return side;
+}
+
+int SectorPlan::steps_alike(Side side, int step, int most) const {
+  const Rings& rings = rings_of(side);
+  // Towards larger steps rings lie farther from V, or nearer to it.
+  const int last = side.forward ? 0 : rings.count - 1;
+  const ViewSector* sector = sector_of(side);
+  if (sector == nullptr || side.ring == last) return most;
+  return std::min(most, sector->first_step + sector->steps - step);
 }
 
 SectorPlan::Span SectorPlan::upright_span(int row) const {
@@ -69,18 +88,13 @@ SectorPlan::Span SectorPlan::upright_span(int row) const {
   return span;
 }
 
-void SectorPlan::add(bool upright, bool forward) {
+void SectorPlan::add(bool upright, bool forward, int most_rings) {
   const int t0 = upright ? part_.y : part_.x;
   const int t_count = upright ? part_.height : part_.width;
   const double s_min = (upright ? part_.x : part_.y) - margin_px_;
   const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + margin_px_;
   const double vt = upright ? vy_ : vx_;
   const double vs = upright ? vx_ : vy_;
-  // Range of s of the centres of the sector's pixels, by step. Empty, low above high, where a step has none.
-  struct Reach {
-    double low;
-    double high;
-  };
   std::vector<Reach> reach;
   const double first_centre = (upright ? part_.x : part_.y) + 0.5;
   const double last_centre = first_centre + (upright ? part_.width : part_.height) - 1;
@@ -113,10 +127,39 @@ void SectorPlan::add(bool upright, bool forward) {
     }
   }
   if (reach.empty()) return;
+  const int count = static_cast<int>(reach.size());
+  std::vector<int> ends{count};
+  if (vw_ > 0 && most_rings > 1) {
+    std::vector<RingRow> rows;
+    for (int n = 0; n < count; ++n) {
+      const int k = forward ? count - 1 - n : n;
+      const Reach& r = reach[static_cast<std::size_t>(k)];
+      const double distance_px = std::abs(t0 + first + k + 0.5 - vt / vw_);
+      rows.push_back({distance_px, (r.low - vs / vw_) / distance_px, (r.high - vs / vw_) / distance_px});
+    }
+    ends = ring_ends(rows, most_rings);
+  }
+  Rings& rings = rings_[upright ? 1 : 0][forward ? 1 : 0];
+  rings.first = static_cast<int>(sectors_.size());
+  int begin = 0;
+  for (const int end : ends) {
+    const int from = forward ? count - end : begin;
+    add_ring(upright, forward, t0 + first + from,
+             std::span(reach).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(end - begin)));
+    begin = end;
+  }
+  rings.count = static_cast<int>(sectors_.size()) - rings.first;
+}
+
+void SectorPlan::add_ring(bool upright, bool forward, int first_step, std::span<const Reach> reach) {
+  const double s_min = (upright ? part_.x : part_.y) - margin_px_;
+  const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + margin_px_;
+  const double vt = upright ? vy_ : vx_;
+  const double vs = upright ? vx_ : vy_;
   ViewSector sector;
   sector.upright = upright;
   sector.forward = forward;
-  sector.first_step = t0 + first;
+  sector.first_step = first_step;
   sector.steps = static_cast<int>(reach.size());
   sector.reference = forward ? sector.first_step + sector.steps - 0.5 : sector.first_step + 0.5;
   sector.spacing = spacing_;
@@ -132,7 +175,7 @@ void SectorPlan::add(bool upright, bool forward) {
     low = std::min(low, map.scale * r.low + map.shift);
     high = std::max(high, map.scale * r.high + map.shift);
   }
-  if (!(low <= high)) return;  // no pixel, so index_ stays without it
+  if (!(low <= high)) return;
   // A pixel has a line on either side.
   low -= spacing_;
   high += spacing_;
@@ -145,7 +188,6 @@ void SectorPlan::add(bool upright, bool forward) {
     sector.line_shift.push_back(
         static_cast<float>((map.scale * sector.origin + map.shift - sector.first_line) / spacing_));
   }
-  index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(sectors_.size());
   // Slopes rise away from the nadir, and towards the zenith.
   sectors_.push_back(std::move(sector));
   ViewSector& made = sectors_.back();

@@ -4,14 +4,16 @@
 // every ViewSector as a ColumnBatch.
 //
 // All planes through the camera and the planet's centre appear in an image as lines through one point, the
-// vanishing point V of the vertical. Diagonals through V divide the image into up to four sectors. In a sector,
-// lines are a fixed distance apart on the image's row (or column) farthest from V, and sample r of a line lies
+// vanishing point V of the vertical. Diagonals through V divide the image into up to four sides, and where lines
+// would be crowded near V a side is divided into rings of rows (or columns), each a sector with lines of its own. In a
+// sector, lines are a fixed distance apart on the row (or column) farthest from V, and sample r of a line lies
 // where the line crosses the r-th row of pixel centres. Along a line the slopes of rays are (a0 + a1 r) / (b0 +
 // b1 r). So a pixel's nearest sample is in its own row, half the spacing away at most, and one affine map for
 // each row finds it (docs/design/rays.md).
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "vpe/core/view.h"
@@ -59,8 +61,10 @@ struct SectorLine {
 class SectorPlan {
  public:
   // The view must be perspective; `up` is the unit vertical at the camera. spacing_px > 0: smaller finds narrower ridges and makes
-  // more columns; 1 gives each pixel samples at most half a pixel away. A sector may have more rows than lines.
-  SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px);
+  // more columns; 1 gives each pixel samples at most half a pixel away. A sector may have more rows than lines. A side has at most
+  // `most_rings` sectors, and several only where that saves samples.
+  SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px, int most_rings = kMostRings);
+  static constexpr int kMostRings = 4;
 
   const std::vector<ViewSector>& sectors() const { return sectors_; }
   // Returns the column of line `index`, 0 <= index < sector.lines.
@@ -77,18 +81,22 @@ class SectorPlan {
   // Returns lines and steps that hold all samples beside the pixels of a rectangle of the full image.
   static Window window(const ViewSector& sector, const core::SubRectangle& pixels);
 
-  // Names a sector by its direction from V.
+  // Names a sector by its direction from V, and its place among those of that direction, the farthest from V first.
   struct Side {
     bool upright;
     bool forward;
+    int ring = 0;
   };
-  // Returns the side of V that an image position lies on.
+  // Returns the side of V that a pixel's centre lies on.
   Side side_of(double x, double y) const;
   // Returns the sector on a side, or nullptr if the drawn part has no pixels of it.
   const ViewSector* sector_of(Side side) const {
-    const int index = index_[side.upright ? 1 : 0][side.forward ? 1 : 0];
-    return index < 0 ? nullptr : &sectors_[static_cast<std::size_t>(index)];
+    const Rings& rings = rings_of(side);
+    return side.ring < rings.count ? &sectors_[static_cast<std::size_t>(rings.first + side.ring)] : nullptr;
   }
+  // Returns how many pixels from step `step` of the full image on, at least one, belong to the same sector as its pixels on this side;
+  // at most `most`.
+  int steps_alike(Side side, int step, int most) const;
 
   // Range [begin, end) of pixels, counted from the left of the drawn part.
   struct Span {
@@ -99,7 +107,21 @@ class SectorPlan {
   Span upright_span(int row) const;
 
  private:
-  void add(bool upright, bool forward);
+  // The sectors of a direction: so many from `first` on.
+  struct Rings {
+    int first = 0;
+    int count = 0;
+  };
+  // Range of s of the centres of a step's pixels on one side. Empty, low above high, where it has none.
+  struct Reach {
+    double low;
+    double high;
+  };
+
+  const Rings& rings_of(Side side) const { return rings_[side.upright ? 1 : 0][side.forward ? 1 : 0]; }
+  void add(bool upright, bool forward, int most_rings);
+  // Adds the sector of the steps from `first_step` on; none if it has no pixels.
+  void add_ring(bool upright, bool forward, int first_step, std::span<const Reach> reach);
 
   core::View view_;
   core::SubRectangle part_;
@@ -114,7 +136,7 @@ class SectorPlan {
   double spacing_;
   double margin_px_;
   std::vector<ViewSector> sectors_;
-  int index_[2][2] = {{-1, -1}, {-1, -1}};
+  Rings rings_[2][2];
 };
 
 }  // namespace vpe::voxel
