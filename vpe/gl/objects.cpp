@@ -105,6 +105,13 @@ Fence Fence::make() {
   return fence;
 }
 
+void Fence::wait() const {
+  if (sync_ == nullptr) return;
+  constexpr GLuint64 kOneSecond_ns = 1'000'000'000;
+  while (glClientWaitSync(sync_, 0, kOneSecond_ns) == GL_TIMEOUT_EXPIRED) {
+  }
+}
+
 Fence::~Fence() {
   if (sync_ != nullptr) glDeleteSync(sync_);
 }

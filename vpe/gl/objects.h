@@ -80,6 +80,8 @@ class Fence {
     return *this;
   }
   ~Fence();
+  // Waits until the commands before the fence have been executed. Without a fence does nothing.
+  void wait() const;
   // Returns OpenGL's object, or null.
   GLsync sync() const { return sync_; }
 

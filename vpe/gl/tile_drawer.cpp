@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -206,11 +207,21 @@ void TileDrawer::use(const TileDraw& tile, const TileFeatures& features, TilePar
   glVertexArrayElementBuffer(array_.name(), mesh.indices.name());
 }
 
+void TileDrawer::keep_up(std::size_t triangles) {
+  ahead_ += triangles;
+  if (ahead_ < kTrianglesAhead) return;
+  ahead_ = 0;
+  Fence next = Fence::make();
+  sent_.wait();
+  sent_ = std::move(next);
+}
+
 void TileDrawer::draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end) {
   const std::size_t index_size = mesh.short_indices ? 2 : 4;
   glDrawElements(what, static_cast<GLsizei>(end - begin),
                  mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(index_size * begin));
+  keep_up((end - begin) / 3);
 }
 
 void TileDrawer::draw_surface(const TileDraw& tile, bool facets) {
@@ -231,6 +242,7 @@ void TileDrawer::draw_surface(const TileDraw& tile, bool facets) {
   }
   glMultiDrawElements(GL_TRIANGLES, counts_.data(), mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
                       begins_.data(), static_cast<GLsizei>(counts_.size()));
+  keep_up(static_cast<std::size_t>(std::reduce(counts_.begin(), counts_.end())) / 3);
 }
 
 void TileDrawer::draw_part(const TileDraw& tile, const TileFeatures& features, TilePart part,

@@ -66,6 +66,9 @@ struct PaletteTable {
 // the crack and a step each for the ribbon's own corners are inside. Skirts stand upright and may be seen
 // edge-on; then the same ribbons close the cracks that skirts leave.
 //
+// While tiles are drawn, at most 2 kTrianglesAhead triangles, and those of a tile more, wait for the rasteriser: on the CPU
+// each takes some 200 bytes of the driver's memory, which nobody counts.
+//
 // Thread rule: the context's thread. Throws std::runtime_error when a program cannot be made.
 //
 // Typical usage, with the target's framebuffer bound, and depth test and polygon mode set:
@@ -78,6 +81,8 @@ struct PaletteTable {
 //   drawer.drop_unused();
 class TileDrawer {
  public:
+  static constexpr std::size_t kTrianglesAhead = std::size_t{1} << 16;
+
   explicit TileDrawer(double planet_radius_m);
 
   // Sets the palette of the draws that follow. null: no tile shows a palette. The table is copied.
@@ -141,6 +146,8 @@ class TileDrawer {
                           std::span<const TileDraw> tiles, const DrawOne& draw_one);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
   void draw_surface(const TileDraw& tile, bool facets);
+  // Counts triangles that were drawn, and waits for earlier ones where too many are ahead of the rasteriser.
+  void keep_up(std::size_t triangles);
 
   double radius_m_;
   double exaggeration_ = 1;
@@ -153,6 +160,8 @@ class TileDrawer {
   bool reads_normals_ = false;   // array_ does
   std::vector<GLsizei> counts_;  // of a call that draws several ranges
   std::vector<const void*> begins_;
+  std::size_t ahead_ = 0;  // triangles drawn since sent_
+  Fence sent_;             // behind the last triangles that were sent
   double step_px_ = 1.0 / 256;
   const TileDraw* first_with_id_ = nullptr;  // not null: IDs are drawn, relative to this tile
 };
