@@ -11,6 +11,7 @@
 #include "vpe/core/margin.h"
 #include "vpe/voxel/ray_renderer.h"
 #include "vpe/window/moved_image.h"
+#include "vpe/window/ui/driver_lock.h"
 
 namespace vpe::app {
 
@@ -242,6 +243,7 @@ void WindowPainter::draw_pair(const window::ImageRequest& request, const core::D
 }
 
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
+  const window::DriverLock lock;
   window::ImageRequest as_asked = as_drawn(request);
   const core::Backend backend = as_asked.backend;
   const bool changes = backend_ && backend_ != backend;

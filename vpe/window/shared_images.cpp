@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "vpe/overlay/overlay.h"
+#include "vpe/window/ui/driver_lock.h"
 
 namespace vpe::window {
 
@@ -62,6 +63,7 @@ SharedImages::SharedImages(const Display& display, explore::DrawContextChoice ch
   } else {
     try {
       context_ = std::make_unique<HiddenWindow>(display);
+      DriverLock::keep_apart(!has_gpu);
     } catch (const std::runtime_error& e) {
       why_not_ = e.what();
     }
@@ -69,6 +71,7 @@ SharedImages::SharedImages(const Display& display, explore::DrawContextChoice ch
 }
 
 SharedImages::~SharedImages() {
+  DriverLock::keep_apart(false);
   if (unused_ != nullptr) glDeleteSync(static_cast<GLsync>(unused_));
 }
 
@@ -79,6 +82,7 @@ void SharedImages::place(ImageRequest& request, const ImageRequest& drawn, bool 
   request.place.needs_gpu = needs_gpu_;
   if (!why_pixels(drawn, is_recording).empty()) return;
   request.place.texture = textures_[next_].name();
+  const DriverLock lock;
   // The painter has passed the former one, since no request is under way.
   if (unused_ != nullptr) glDeleteSync(static_cast<GLsync>(unused_));
   unused_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -89,7 +93,10 @@ void SharedImages::place(ImageRequest& request, const ImageRequest& drawn, bool 
 bool SharedImages::take(const DrawnImage& drawn) {
   is_shown_ = drawn.is_in_texture;
   if (!is_shown_) return false;
-  if (drawn.drawn != nullptr) glWaitSync(static_cast<GLsync>(drawn.drawn), 0, GL_TIMEOUT_IGNORED);
+  if (drawn.drawn != nullptr) {
+    const DriverLock lock;
+    glWaitSync(static_cast<GLsync>(drawn.drawn), 0, GL_TIMEOUT_IGNORED);
+  }
   textures_[next_].set_stored(drawn.image.width, drawn.image.height);
   next_ = 1 - next_;
   ++count_;

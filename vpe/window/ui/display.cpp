@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "vpe/window/ui/driver_lock.h"
 #include "vpe/window/ui/hand_cursor.h"
 
 namespace vpe::window {
@@ -326,7 +327,10 @@ std::vector<Event> Display::events(double wait_s) {
 void Display::wake() { glfwPostEmptyEvent(); }
 
 void Display::begin_frame() {
-  ImGui_ImplOpenGL3_NewFrame();
+  {
+    const DriverLock lock;
+    ImGui_ImplOpenGL3_NewFrame();
+  }
   ImGui_ImplGlfw_NewFrame();
 #if IMGUI_VERSION_NUM < 18700
   // ImGui would not see a key that is pressed and released between two frames.
@@ -376,6 +380,7 @@ void Display::end_frame(core::RgbImage* shown) {
   int width = 0;
   int height = 0;
   framebuffer(width, height);
+  const DriverLock lock;
   glViewport(0, 0, width, height);
   glClearColor(0.05F, 0.05F, 0.06F, 1);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -385,6 +390,7 @@ void Display::end_frame(core::RgbImage* shown) {
 }
 
 Texture::Texture() {
+  const DriverLock lock;
   glGenTextures(1, &name_);
   glBindTexture(GL_TEXTURE_2D, name_);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -393,7 +399,10 @@ Texture::Texture() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-Texture::~Texture() { glDeleteTextures(1, &name_); }
+Texture::~Texture() {
+  const DriverLock lock;
+  glDeleteTextures(1, &name_);
+}
 
 void Texture::upload(const core::RgbImage& image) {
   static_assert(sizeof(base::Rgb) == 3);
@@ -405,6 +414,7 @@ void Texture::upload_rgba(std::span<const std::uint8_t> pixels, int width, int h
 }
 
 void Texture::upload(unsigned format, const std::uint8_t* pixels, int width, int height) {
+  const DriverLock lock;
   glBindTexture(GL_TEXTURE_2D, name_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   if (width == width_ && height == height_ && format == format_) {
