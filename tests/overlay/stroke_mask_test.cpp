@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -196,6 +197,31 @@ TEST(StrokeMask, LeavesOutWhatIsOutside) {
                   whole[static_cast<std::size_t>(y * (kSide_px + 2 * kBeside_px) + x + kBeside_px)]);
       }
     }
+  }
+}
+
+TEST(StrokeMask, EndsFarOutsideChangeNothing) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(10, 86);
+  for (int n = 0; n < 50; ++n) {
+    const glm::dvec2 a(place(random), place(random)), b(place(random), place(random));
+    const glm::dvec2 along = glm::normalize(b - a);
+    const Pixels near = coverage({a - 300.0 * along, a + 300.0 * along}, 2);
+    for (const double far_px : {1e5, 3e7, 1e12}) {
+      const Pixels far =
+          coverage({a - far_px * along, a + far_px * along, a + far_px * glm::dvec2(along.y, along.x)}, 2);
+      for (std::size_t k = 0; k < near.size(); ++k)
+        ASSERT_NEAR(far[k], near[k], 3 + 1e-12 * far_px) << "line " << n << " to " << far_px << " px";
+    }
+  }
+}
+
+TEST(StrokeMask, PlacesThatAreNoNumbersAreLeftOut) {
+  const Pixels straight = coverage({{10, 10}, {80, 80}}, 2);
+  for (const double no : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                          -std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(coverage({{10, 10}, {no, 50}, {50, no}, {80, 80}}, 2), straight) << no;
+    EXPECT_EQ(coverage({{no, no}, {10, 10}, {80, 80}, {no, 0}}, 2, true), straight) << no;
   }
 }
 

@@ -34,7 +34,7 @@ struct TextSize {
   double height;
 };
 
-// Draws shapes and text with Cairo. For one thread at a time.
+// Draws shapes and text: lines up to kWidestThinLine_px by StrokeMask, all else with Cairo. For one thread at a time.
 class Canvas {
  public:
   // Throws std::runtime_error if there is not enough memory.

@@ -52,7 +52,8 @@ struct StrokeRows {
 };
 
 // Raise the coverage of pixels to that by each piece, or corner, by itself. Bits are equal with any instruction set,
-// and wherever the image was cut out of a larger one at whole pixels.
+// and wherever the image was cut out of a larger one at whole pixels. Distances are floats: a piece that begins 16 384 px away is
+// off by less than 0.01 px.
 void cover_pieces(std::span<const StrokePiece> pieces, StrokeRows& rows);
 void cover_corner(const StrokeCorner& corner, StrokeRows& rows);
 

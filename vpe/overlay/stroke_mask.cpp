@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+#include <utility>
 
 namespace vpe::overlay {
 namespace {
@@ -16,6 +18,35 @@ PieceEnd corner_end(glm::vec2 along, glm::vec2 next, float radius_px) {
   const float reach_px = radius_px + kPixelCorner_px;
   return {false,
           cosine < kGentleCosine ? 0 : reach_px * std::sqrt(std::max(0.0F, (1 - cosine) / (1 + cosine)))};
+}
+
+// So far beside the image pieces keep their bits.
+constexpr double kKept_px = 16384;
+
+bool is_near(glm::dvec2 p, glm::dvec2 size_px) {
+  return glm::all(glm::greaterThan(p, glm::dvec2(-kKept_px))) && glm::all(glm::lessThan(p, size_px + kKept_px));
+}
+
+// Cuts a piece to what is near the image, whose distances float can hold. Returns false if nothing of it is.
+bool cut_to_near(glm::dvec2& from, glm::dvec2& to, glm::dvec2 size_px) {
+  const glm::dvec2 way = to - from;
+  double begin = 0, end = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    double low = (-kKept_px - from[axis]) / way[axis];
+    double high = (size_px[axis] + kKept_px - from[axis]) / way[axis];
+    if (way[axis] == 0) {
+      if (from[axis] < -kKept_px || from[axis] > size_px[axis] + kKept_px) return false;
+      continue;
+    }
+    if (low > high) std::swap(low, high);
+    begin = std::max(begin, low);
+    end = std::min(end, high);
+  }
+  if (begin >= end) return false;
+  const glm::dvec2 start = from;
+  if (begin > 0) from = start + begin * way;
+  if (end < 1) to = start + end * way;
+  return true;
 }
 
 }  // namespace
@@ -32,25 +63,36 @@ void StrokeMask::add(std::span<const glm::dvec2> points, bool closed, double wid
   constexpr double kLeast_px = 1e-4;
   pieces_.clear();
   const auto radius_px = static_cast<float>(0.5 * width_px);
+  const glm::dvec2 size_px(rows_.width, rows_.height);
   const auto add_piece = [&](glm::dvec2 from, glm::dvec2 to) {
+    if (!(is_near(from, size_px) && is_near(to, size_px)) && !cut_to_near(from, to, size_px)) return;
     const double length_px = glm::length(to - from);
-    if (length_px <= kLeast_px) return false;
+    if (length_px <= kLeast_px) return;
     pieces_.push_back(
         {from, glm::vec2((to - from) / length_px), static_cast<float>(length_px), radius_px, {}, {}});
-    return true;
   };
-  std::size_t last = 0;
-  for (std::size_t n = 1; n < points.size(); ++n) {
-    if (add_piece(points[last], points[n])) last = n;
+  const glm::dvec2* first = nullptr;
+  const glm::dvec2* last = nullptr;
+  int edges = 0;
+  for (const glm::dvec2& point : points) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y)) continue;
+    if (last == nullptr) first = last = &point;
+    if (glm::length(point - *last) <= kLeast_px) continue;
+    add_piece(*last, point);
+    last = &point;
+    ++edges;
   }
-  if (closed && pieces_.size() > 1) add_piece(points[last], points[0]);
+  const bool is_ring = closed && edges > 1;
+  if (is_ring && glm::length(*first - *last) > kLeast_px) add_piece(*last, *first);
+  // Pieces that were cut, or have others between them that were left out, meet nowhere near.
   const auto join = [&](StrokePiece& before, StrokePiece& after) {
+    if (!is_near(after.from, size_px)) return;
     before.end = after.start = corner_end(before.along, after.along, radius_px);
     if (glm::dot(before.along, after.along) < kGentleCosine)
       cover_corner({after.from, before.along, after.along, radius_px}, rows_);
   };
   for (std::size_t n = 1; n < pieces_.size(); ++n) join(pieces_[n - 1], pieces_[n]);
-  if (closed && pieces_.size() > 1) join(pieces_.back(), pieces_.front());
+  if (is_ring && !pieces_.empty()) join(pieces_.back(), pieces_.front());
   cover_pieces(pieces_, rows_);
 }
 

@@ -29,8 +29,8 @@ class StrokeMask {
   StrokeMask(const StrokeMask&) = delete;
   StrokeMask& operator=(const StrokeMask&) = delete;
 
-  // Adds a line of at most kWidestThinLine_px. What lies outside of the image is left out; fewer than two different points cover
-  // nothing.
+  // Adds a line of at most kWidestThinLine_px. What lies outside of the image is left out, and so are points that are not finite; fewer
+  // than two different points cover nothing.
   void add(std::span<const glm::dvec2> points, bool closed, double width_px);
 
   // Calls use(y, x, coverage) for each row that was touched, from its first touched pixel x on, and empties the mask.

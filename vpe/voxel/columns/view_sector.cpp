@@ -66,7 +66,7 @@ int SectorPlan::steps_alike(Side side, int step, int most) const {
   const int last = side.forward ? 0 : rings.count - 1;
   const ViewSector* sector = sector_of(side);
   if (sector == nullptr || side.ring == last) return most;
-  return std::min(most, sector->first_step + sector->steps - step);
+  return std::clamp(sector->first_step + sector->steps - step, 1, std::max(1, most));
 }
 
 SectorPlan::Span SectorPlan::upright_span(int row) const {
