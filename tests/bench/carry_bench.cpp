@@ -1,5 +1,5 @@
 // Compares images that are carried from another one (vpe/warp) with images that are drawn in full by rays: processor time of
-// a pixel, and what is left to draw. The first image has the margin that the other view asks for. docs/measurements/rays.md has the figures.
+// a pixel, and what is left to draw. The first image has the margin that the other view asks for. docs/measurements/carrying.md has the figures.
 //
 //   carry_bench PLANET [ROUNDS [SIZE [MOST_ADDED_PX [CASE]]]]
 #include <cstdio>

@@ -1,5 +1,5 @@
 // Times painting an image whose ranges are known (vpe/voxel/paint/image_painter.h) against
-// TerrainShader::colour_at, sky and haze pixel by pixel. docs/measurements/rays.md has the figures, section
+// TerrainShader::colour_at, sky and haze pixel by pixel. docs/measurements/painting.md has the figures, section
 // "Painting".
 //
 //   painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]
