@@ -17,7 +17,6 @@ namespace scripts {
 
 using relief::ReliefSpec;
 using vpe::base::format_number;
-using vpe::core::KeyValue;
 using vpe::core::NumberOrWord;
 
 namespace {
@@ -31,7 +30,7 @@ std::string at_time(const std::string& name, double time_s) {
 
 // Returns the number of a key that changes smoothly, or nullopt.
 std::optional<double> number_of(std::size_t key, const ReliefSpec& spec) {
-  const KeyValue value = relief::relief_keys().get(key, spec);
+  const vpe::core::KeyValue value = relief::relief_keys().get(key, spec);
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* number = std::get_if<NumberOrWord>(&value)) return number->number;
   return std::nullopt;

@@ -131,7 +131,7 @@ TEST(SparseTiff, HasTheHeightsOfAFullOne) {
     const test_support::TempDir folder;
     const auto sparse = mars::open_elevation(sparse_tiff(folder, true, first_column));
     const auto full = mars::open_elevation(sparse_tiff(folder, true, first_column, false));
-    test_support::Random random(first_column);
+    test_support::Random random(static_cast<std::uint64_t>(first_column));
     int with_data = 0;
     for (int n = 0; n < 4000; ++n) {
       // Of each other place the pixels are near the data.

@@ -66,9 +66,10 @@ VolumeLattice lattice_around(const openvdb::FloatGrid& grid, const ModelFrame& f
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   glm::dvec3 low_m(std::numeric_limits<double>::infinity());
   glm::dvec3 high_m(-std::numeric_limits<double>::infinity());
-  for (int corner = 0; corner < 8; ++corner) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
     openvdb::Vec3d at;
-    for (int k = 0; k < 3; ++k) at[k] = ((corner >> k) & 1) != 0 ? box.max()[k] : box.min()[k];
+    for (unsigned k = 0; k < 3; ++k)
+      at[static_cast<int>(k)] = ((corner >> k) & 1) != 0 ? box.max()[k] : box.min()[k];
     const glm::dvec3 m = frame.model(grid.indexToWorld(at));
     low_m = glm::min(low_m, m);
     high_m = glm::max(high_m, m);
