@@ -59,7 +59,7 @@ class GreedyMesher {
     field_.ignore_borders();
     triangles_.start(lines, intervals_);
     faces_.clear();
-    unchecked_.clear();
+    unchecked_count_ = 0;
     keep_borders(lines, borders);
     return grow(lines);
   }
@@ -67,6 +67,7 @@ class GreedyMesher {
   template <class Lines>
   void keep_borders(const Lines& lines, const BorderPosts& borders) {
     triangles_.keep_borders(lines, borders, [this](const std::vector<int>& star) {
+      make_room();
       for (const int f : star) state(f).is_scanned = false;
     });
   }
@@ -74,6 +75,7 @@ class GreedyMesher {
   template <class Lines>
   TileMesh grow(const Lines& lines) {
     queue_.clear();
+    make_room();
     forget_unchecked();
     for (int f = 0; f < topology().face_count(); ++f) recall(lines, f);
     do {
@@ -89,6 +91,7 @@ class GreedyMesher {
   void insert(const Lines& lines, int face, std::uint32_t post) {
     field_.ignore(post);
     triangles_.insert(lines, face, post);
+    make_room();
     for (const int f : triangles_.star()) touch(lines, f);
   }
 
@@ -101,10 +104,13 @@ class GreedyMesher {
     WorstPost worst() const { return {worst_m, worst_post}; }
   };
 
-  FaceState& state(int face) {
-    const auto f = static_cast<std::size_t>(face);
-    if (f >= faces_.size()) faces_.resize(f + 1);
-    return faces_[f];
+  FaceState& state(int face) { return faces_[static_cast<std::size_t>(face)]; }
+
+  // Makes room for what is known of all triangles.
+  void make_room() {
+    const auto count = static_cast<std::size_t>(topology().face_count());
+    faces_.resize(count);
+    unchecked_.resize(count + 1);
   }
 
   // Queues a triangle that has changed.
@@ -132,33 +138,23 @@ class GreedyMesher {
   }
 
   void want_check(int face, FaceState& known) {
-    if (known.is_unchecked) return;
+    unchecked_[unchecked_count_] = face;
+    unchecked_count_ += known.is_unchecked ? 0 : 1;
     known.is_unchecked = true;
-    unchecked_.push_back(face);
   }
 
   // Although all posts are within tolerance, a long edge may cut a crest between two posts. Inserts a post
   // against each such edge of the triangles made since the last call. Returns false if there was none.
   template <class Lines>
   bool repair_edges(const Lines& lines) {
+    collect_edges();
     wanted_.clear();
-    for (const int f : unchecked_) {
-      int h = topology().first_halfedge(f);
-      for (int side = 0; side < 3; ++side, h = topology().next(h)) {
-        // An edge between two such triangles is checked from the first of them.
-        const int other = topology().across(h);
-        const int beyond = other < 0 ? f : topology().face(other);
-        if (beyond < f && faces_[static_cast<std::size_t>(beyond)].is_unchecked) continue;
-        // An edge whose error was within the tolerance has none beyond it, since posts only become vertices.
-        double& edge_m = triangles_.edge_m(h);
-        if (edge_m <= tolerance_m_) continue;
-        const WorstPost worst = field_.worst_crossing(triangles_.vertex(topology().from(h)),
-                                                      triangles_.vertex(topology().to(h)), tolerance_m_);
-        edge_m = worst.geometric_error_m;
-        if (edge_m > tolerance_m_) wanted_.push_back({worst.post, f});
-      }
+    for (const auto& [h, face] : edges_) {
+      const WorstPost worst = field_.worst_crossing(triangles_.vertex(topology().from(h)),
+                                                    triangles_.vertex(topology().to(h)), tolerance_m_);
+      triangles_.edge_m(h) = worst.geometric_error_m;
+      if (worst.geometric_error_m > tolerance_m_) wanted_.push_back({worst.post, face});
     }
-    forget_unchecked();
     std::sort(wanted_.begin(), wanted_.end());
     bool any = false;
     std::uint32_t last = ~0U;
@@ -171,9 +167,43 @@ class GreedyMesher {
     return any;
   }
 
+  // Collects the edges of unchecked triangles that may have errors beyond the tolerance, each once. An edge whose error was
+  // within the tolerance has none beyond it, since posts only become vertices. Without branches, which nothing could foresee.
+  void collect_edges() {
+    edges_.resize(3 * unchecked_count_);
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < unchecked_count_; ++k) {
+      const int f = unchecked_[k];
+      int h = topology().first_halfedge(f);
+      for (int side = 0; side < 3; ++side, h = topology().next(h)) {
+        double& edge_m = triangles_.edge_m(h);
+        edges_[count] = {h, f};
+        count += static_cast<std::size_t>(edge_m > tolerance_m_);
+        edge_m = std::min(edge_m, tolerance_m_);  // not collected again
+      }
+    }
+    forget_unchecked();
+    // Edges along lines and diagonals of S have no crossings.
+    std::size_t slanting = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [h, face] = edges_[k];
+      const Corner& a = triangles_.vertex(topology().from(h));
+      const Corner& b = triangles_.vertex(topology().to(h));
+      const int di = b.i - a.i;
+      const int dj = b.j - a.j;
+      const bool is_of_surface = (di == 0) | (dj == 0) | ((di == dj) & (di * di == 1));
+      edges_[slanting] = {h, face};
+      slanting += static_cast<std::size_t>(!is_of_surface);
+      double& edge_m = triangles_.edge_m(h);
+      edge_m = is_of_surface ? 0.0 : edge_m;
+    }
+    edges_.resize(slanting);
+  }
+
   void forget_unchecked() {
-    for (const int f : unchecked_) faces_[static_cast<std::size_t>(f)].is_unchecked = false;
-    unchecked_.clear();
+    for (std::size_t k = 0; k < unchecked_count_; ++k)
+      faces_[static_cast<std::size_t>(unchecked_[k])].is_unchecked = false;
+    unchecked_count_ = 0;
   }
 
   template <class Lines>
@@ -194,7 +224,9 @@ class GreedyMesher {
   PostField field_;
   PostQueue queue_;
   std::vector<FaceState> faces_;
-  std::vector<int> unchecked_;  // triangles whose edges repair_edges() has not checked
+  std::vector<int> unchecked_;  // its first entries: triangles whose edges repair_edges() has not checked
+  std::size_t unchecked_count_ = 0;
+  std::vector<std::pair<int, int>> edges_;  // halfedges to check, and triangles beside them
   std::vector<std::pair<std::uint32_t, int>> wanted_;
   TileKey key_;
   int intervals_ = 0;

@@ -32,21 +32,20 @@ double PostField::crossing_bound_m(const Corner& a, const Corner& b) const {
   std::size_t j = a.j + north - 1;
   double most = 0;
   double t = 0;
+  double s0 = 1.0 - static_cast<double>(east);  // the place in the cell, 0 to 1
+  double r0 = 1.0 - static_cast<double>(north);
+  double t_column = (x_[i + east] - ax) * per_x;
+  double t_row = (y_[j + north] - ay) * per_y;
   while (true) {
     const double* low = w_.data() + j * side_ + i;
     const double* high = low + side_;
-    const double t_column = (x_[i + east] - ax) * per_x;
-    const double t_row = (y_[j + north] - ay) * per_y;
     // Within rounding of the last corner there is no error.
     const double next = std::min(t_column, t_row);
     const bool is_last = next > 1.0 - 1e-11;
     const double end = is_last ? 1.0 : next;
-    const auto across = [&](double at) { return (ax + at * dx - x_[i]) * per_column_[i]; };
-    const auto up = [&](double at) { return (ay + at * dy - y_[j]) * per_row_[j]; };
-    const double s0 = across(t);
-    const double s1 = across(end);
-    const double r1 = up(end);
-    const double g0 = s0 - up(t);
+    const double s1 = (ax + end * dx - x_[i]) * per_column_[i];
+    const double r1 = (ay + end * dy - y_[j]) * per_row_[j];
+    const double g0 = s0 - r0;
     const double g1 = s1 - r1;
     if (g0 * g1 < 0) {
       const double part = g0 / (g0 - g1);
@@ -58,10 +57,16 @@ double PostField::crossing_bound_m(const Corner& a, const Corner& b) const {
     if (t_column <= t_row) {
       most = std::max(most, std::abs(low[east] + r1 * (high[east] - low[east]) - chord));
       i += 2 * east - 1;
+      t_column = (x_[i + east] - ax) * per_x;
+      s0 = 1.0 - static_cast<double>(east);
+      r0 = r1;
     } else {
       const double* line = north != 0 ? high : low;
       most = std::max(most, std::abs(line[0] + s1 * (line[1] - line[0]) - chord));
       j += 2 * north - 1;
+      t_row = (y_[j + north] - ay) * per_y;
+      s0 = s1;
+      r0 = 1.0 - static_cast<double>(north);
     }
     t = end;
   }

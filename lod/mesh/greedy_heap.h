@@ -1,6 +1,8 @@
 // A priority queue of the worst post of each triangle. Internal to lod.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -53,8 +55,8 @@ class PostQueue {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   static bool before(const QueuedPost& a, const QueuedPost& b) {
-    return a.geometric_error_m > b.geometric_error_m ||
-           (a.geometric_error_m == b.geometric_error_m && a.post < b.post);
+    return (a.geometric_error_m > b.geometric_error_m) |
+           ((a.geometric_error_m == b.geometric_error_m) & (a.post < b.post));
   }
 
   void put(std::size_t at, const QueuedPost& entry) {
@@ -69,7 +71,8 @@ class PostQueue {
       at = (at - 1) / 2;
     }
     for (std::size_t below = 2 * at + 1; below < heap_.size(); below = 2 * at + 1) {
-      if (below + 1 < heap_.size() && before(heap_[below + 1], heap_[below])) ++below;
+      const std::size_t other = std::min(below + 1, heap_.size() - 1);
+      below += static_cast<std::size_t>(before(heap_[other], heap_[below]));
       if (!before(heap_[below], entry)) break;
       put(at, heap_[below]);
       at = below;

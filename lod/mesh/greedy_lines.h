@@ -14,11 +14,18 @@ struct RowEdge {
   std::int64_t x0, y0, x1, y1;
 };
 
-// A vertex of a triangulation: its post with grid and integer coordinates.
+// A vertex of a triangulation: its post with grid and integer coordinates. Small, since meshes do not fit the nearest caches.
 struct Corner {
-  std::uint32_t post, i, j;
-  std::int64_t x, y;
+  std::uint32_t post;
+  std::uint16_t i, j;
+  std::int32_t x, y;
 };
+
+// Returns twice the area of a triangle, above 0 if it is counter-clockwise.
+inline std::int64_t turn_of(const Corner& a, const Corner& b, const Corner& c) {
+  const auto product = [](std::int32_t p, std::int32_t q) { return std::int64_t{p} * q; };
+  return product(b.x - a.x, c.y - a.y) - product(b.y - a.y, c.x - a.x);
+}
 
 // The lines of a tile of level 5 or finer. They are even along both axes, so that the chart is the grid up to a
 // scale: the coordinate of a line is its index.
@@ -43,9 +50,7 @@ class EvenLines {
   };
 
   // Returns true if a counter-clockwise triangle contains no post except its corners (Pick's theorem).
-  static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) == 1;
-  }
+  static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) { return turn_of(a, b, c) == 1; }
 
   // Returns the sign of the in-circle determinant of a counter-clockwise triangle a b c and d: > 0 inside.
   // Arguments are relative to d.

@@ -86,9 +86,7 @@ WorstPost PostField::worst_by_rows(const Lines& lines, const ScannedPlane& flat,
   if (middle->j < low->j) std::swap(low, middle);
 
   WorstPost worst;
-  const std::int64_t turn =
-      (high->x - low->x) * (middle->y - low->y) - (high->y - low->y) * (middle->x - low->x);
-  const bool middle_left = turn > 0;
+  const bool middle_left = turn_of(*low, *high, *middle) > 0;
   typename Lines::Walk whole(lines, {low->x, low->y, high->x, high->y});
   std::array<ScannedRow, 32> rows;
   std::size_t count = 0;
@@ -113,29 +111,24 @@ WorstPost PostField::worst_by_rows(const Lines& lines, const ScannedPlane& flat,
   return worst;
 }
 
-inline ScannedSide PostField::side_of(const Corner& from, const Corner& to) {
+[[gnu::always_inline]] inline ScannedSide PostField::side_of(const Corner& from, const Corner& to) {
   const auto dx = static_cast<double>(to.x - from.x);
   const auto dy = static_cast<double>(to.y - from.y);
   // Values at posts are whole numbers. Posts on sides that ascend, or that run west, belong to the neighbour.
-  const bool has_own_posts = dy < 0 || (dy == 0 && dx > 0);
+  const bool has_own_posts = (to.y < from.y) | ((to.y == from.y) & (to.x > from.x));
   const double at = dy * static_cast<double>(from.x) - dx * static_cast<double>(from.y);
-  return {at + (has_own_posts ? 0.5 : -0.5), -dy, dx};
+  return {at + (static_cast<double>(has_own_posts) - 0.5), -dy, dx};
 }
 
-inline ScannedPlane PostField::plane(const Corner& a, const Corner& b, const Corner& c) const {
+[[gnu::always_inline]] inline ScannedPlane PostField::plane(const Corner& a, const Corner& b,
+                                                            const Corner& c) const {
   // Starts at the lowest post, so that the bits do not depend on the order of the corners.
-  const Corner* o = &a;
-  const Corner* p = &b;
-  const Corner* q = &c;
-  if (b.post < a.post && b.post < c.post) {
-    o = &b;
-    p = &c;
-    q = &a;
-  } else if (c.post < a.post && c.post < b.post) {
-    o = &c;
-    p = &a;
-    q = &b;
-  }
+  const std::array<const Corner*, 5> corner{&a, &b, &c, &a, &b};
+  const std::size_t first = static_cast<std::size_t>((b.post < a.post) & (b.post < c.post)) +
+                            2 * static_cast<std::size_t>((c.post < a.post) & (c.post < b.post));
+  const Corner* o = corner[first];
+  const Corner* p = corner[first + 1];
+  const Corner* q = corner[first + 2];
   const auto px = static_cast<double>(p->x - o->x);
   const auto py = static_cast<double>(p->y - o->y);
   const auto qx = static_cast<double>(q->x - o->x);

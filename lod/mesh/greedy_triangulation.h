@@ -40,6 +40,7 @@ class GreedyTriangulation {
     for (const std::uint32_t post : {0U, last, last * side_ + last, last * side_}) {
       vertices_.push_back(corner(lines, post));
     }
+    edges_m_.resize(3 * vertices_.size(), kUnknown);
     for (int side = 0; side < 4; ++side) {
       border_[static_cast<std::size_t>(side)] = {{0, side}, {intervals_, (side + 1) % 4}};
     }
@@ -53,9 +54,7 @@ class GreedyTriangulation {
   // and so has every edge at each call if the half-edge structure does not number edges.
   double& edge_m(int halfedge) {
     if constexpr (requires(const Topology& t) { t.edge(0); }) {
-      const auto e = static_cast<std::size_t>(topology_.edge(halfedge));
-      if (e >= edges_m_.size()) edges_m_.resize(e + 1, kUnknown);
-      return edges_m_[e];
+      return edges_m_[static_cast<std::size_t>(topology_.edge(halfedge))];
     } else {
       return unknown_m_ = kUnknown;
     }
@@ -105,9 +104,7 @@ class GreedyTriangulation {
     star_.clear();
     int h = topology_.first_halfedge(face);
     for (int side = 0; side < 3; ++side, h = topology_.next(h)) {
-      const Corner& a = vertex(topology_.from(h));
-      const Corner& b = vertex(topology_.to(h));
-      if ((b.x - a.x) * (p.y - a.y) == (b.y - a.y) * (p.x - a.x)) {
+      if (turn_of(vertex(topology_.from(h)), vertex(topology_.to(h)), p) == 0) {
         forget_edge(h);
         legalise(lines, v, topology_.split_edge(h, v));
         return;
@@ -122,9 +119,7 @@ class GreedyTriangulation {
     const Corner p = corner(lines, post);
     int h = topology_.first_halfedge(face);
     for (int inside = 0; inside < 3;) {
-      const Corner& a = vertex(topology_.from(h));
-      const Corner& b = vertex(topology_.to(h));
-      if ((b.x - a.x) * (p.y - a.y) < (b.y - a.y) * (p.x - a.x)) {
+      if (turn_of(vertex(topology_.from(h)), vertex(topology_.to(h)), p) < 0) {
         h = topology_.next(topology_.across(h));
         inside = 1;
       } else {
@@ -185,11 +180,15 @@ class GreedyTriangulation {
 
   template <class Lines>
   Corner corner(const Lines& lines, std::uint32_t post) const {
-    return {post, post % side_, post / side_, lines.x()[post % side_], lines.y()[post / side_]};
+    const std::uint32_t i = post % side_;
+    const std::uint32_t j = post / side_;
+    return {post, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j),
+            static_cast<std::int32_t>(lines.x()[i]), static_cast<std::int32_t>(lines.y()[j])};
   }
   template <class Lines>
   int add(const Lines& lines, std::uint32_t post) {
     vertices_.push_back(corner(lines, post));
+    edges_m_.resize(3 * vertices_.size(), kUnknown);  // a triangulation has fewer edges
     return topology_.add_vertex();
   }
 

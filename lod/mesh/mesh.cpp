@@ -32,32 +32,28 @@ TileMesh canonical_mesh(int intervals, const std::vector<std::uint32_t>& posts,
     index[post] = static_cast<std::uint16_t>(mesh.vertices.size());
     mesh.vertices.push_back({static_cast<std::uint16_t>(post % side), static_cast<std::uint16_t>(post / side)});
   }
-  // Counting sort by the first vertex, then an insertion sort of the few triangles of each vertex.
+  // Two counting sorts: by the second vertex, then by the first. No two triangles have both in this order.
   std::vector<std::uint64_t> rotated;
   rotated.reserve(triangles.size());
-  std::vector<std::uint32_t> end(mesh.vertices.size() + 1);
+  std::vector<std::uint32_t> end_by_second(mesh.vertices.size() + 1);
+  std::vector<std::uint32_t> end_by_first(mesh.vertices.size() + 1);
   for (const std::array<std::uint32_t, 3>& t : triangles) {
     const std::uint64_t a = index[t[0]];
     const std::uint64_t b = index[t[1]];
     const std::uint64_t c = index[t[2]];
-    rotated.push_back(std::min({a << 32 | b << 16 | c, b << 32 | c << 16 | a, c << 32 | a << 16 | b}));
-    ++end[(rotated.back() >> 32) + 1];
+    const std::uint64_t least =
+        std::min(std::min(a << 32 | b << 16 | c, b << 32 | c << 16 | a), c << 32 | a << 16 | b);
+    rotated.push_back(least);
+    ++end_by_second[(least >> 16 & 0xFFFF) + 1];
+    ++end_by_first[(least >> 32) + 1];
   }
-  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::partial_sum(end_by_second.begin(), end_by_second.end(), end_by_second.begin());
+  std::partial_sum(end_by_first.begin(), end_by_first.end(), end_by_first.begin());
   std::vector<std::uint64_t> packed(rotated.size());
-  for (const std::uint64_t t : rotated) packed[end[t >> 32]++] = t;
-  for (std::size_t begin = 0; begin < packed.size();) {
-    const std::size_t stop = end[packed[begin] >> 32];
-    for (std::size_t k = begin + 1; k < stop; ++k) {
-      const std::uint64_t t = packed[k];
-      std::size_t at = k;
-      for (; at > begin && packed[at - 1] > t; --at) packed[at] = packed[at - 1];
-      packed[at] = t;
-    }
-    begin = stop;
-  }
-  mesh.triangles.reserve(3 * packed.size());
-  for (const std::uint64_t t : packed) {
+  for (const std::uint64_t t : rotated) packed[end_by_second[t >> 16 & 0xFFFF]++] = t;
+  for (const std::uint64_t t : packed) rotated[end_by_first[t >> 32]++] = t;
+  mesh.triangles.reserve(3 * rotated.size());
+  for (const std::uint64_t t : rotated) {
     for (const int shift : {32, 16, 0}) mesh.triangles.push_back(static_cast<std::uint16_t>(t >> shift));
   }
   return mesh;

@@ -76,14 +76,19 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
     const double n = length_at(u, v);
     vertices[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
   }
-  triangles.reserve(mesh.triangle_count());
-  triangle_boxes.reserve(mesh.triangle_count());
-  segments.reserve(mesh.triangle_count() * 3 / 2);
-  segment_boxes.reserve(mesh.triangle_count() * 3 / 2);
+  const std::size_t count = mesh.triangle_count();
+  triangles.reserve(count);
+  triangle_boxes.reserve(count);
+  // Edges are counted from both sides, but for those on borders; one more is written over.
+  const std::size_t most_edges = 3 * count / 2 + 2 * static_cast<std::size_t>(intervals) + 2;
+  segments.resize(most_edges);
+  segment_boxes.resize(most_edges);
+  std::size_t edges = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     // Vertices ascend, and triangles begin with their lowest one, counter-clockwise.
     const std::uint16_t* corner = mesh.triangles.data() + t;
-    const auto [middle, last] = std::minmax(corner[1], corner[2]);
+    const std::uint16_t middle = std::min(corner[1], corner[2]);
+    const std::uint16_t last = std::max(corner[1], corner[2]);
     triangles.add({corner[0], middle, last});
     const MeshVertex& p = mesh.vertices[corner[0]];
     const MeshVertex& q = mesh.vertices[middle];
@@ -91,18 +96,21 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
     triangle_boxes.push_back({std::min(std::min(p.i, q.i), r.i), std::max(std::max(p.i, q.i), r.i), p.j, r.j});
     for (const auto& [a, b] :
          {std::pair(corner[0], corner[1]), std::pair(corner[1], corner[2]), std::pair(corner[2], corner[0])}) {
-      const MeshVertex& from = mesh.vertices[a];
-      const MeshVertex& to = mesh.vertices[b];
-      const bool slanting = from.i != to.i && from.j != to.j;
-      // Triangles are counter-clockwise, so an inner edge occurs once in each direction.
-      if (slanting ? a >= b
-                   : (from.i != intervals || to.i != intervals) && (from.j != intervals || to.j != intervals))
-        continue;
-      segments.add({a, b});
-      segment_boxes.push_back(
-          {std::min(from.i, to.i), std::max(from.i, to.i), std::min(from.j, to.j), std::max(from.j, to.j)});
+      const MeshVertex from = mesh.vertices[a];
+      const MeshVertex to = mesh.vertices[b];
+      segments.set(edges, {a, b});
+      segment_boxes[edges] = {std::min(from.i, to.i), std::max(from.i, to.i), std::min(from.j, to.j),
+                              std::max(from.j, to.j)};
+      // Triangles are counter-clockwise, so an inner edge occurs once in each direction. Without branches, which nothing
+      // could foresee.
+      const bool slants = (from.i != to.i) & (from.j != to.j);
+      const bool is_border =
+          ((from.i == intervals) & (to.i == intervals)) | ((from.j == intervals) & (to.j == intervals));
+      edges += static_cast<std::size_t>((slants & (a < b)) | is_border);
     }
   }
+  segments.resize(edges);
+  segment_boxes.resize(edges);
 }
 
 }  // namespace lod

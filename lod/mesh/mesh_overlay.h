@@ -120,7 +120,9 @@ struct CoarseMesh {
       return std::apply([&](auto... at) { return Piece{vertices_[at]...}; }, corners_[k]);
     }
     void reserve(std::size_t count) { corners_.reserve(count); }
+    void resize(std::size_t count) { corners_.resize(count); }
     void add(const std::array<std::uint16_t, Corners>& corners) { corners_.push_back(corners); }
+    void set(std::size_t k, const std::array<std::uint16_t, Corners>& corners) { corners_[k] = corners; }
 
    private:
     const std::vector<Vertex>& vertices_;

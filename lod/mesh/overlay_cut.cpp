@@ -44,22 +44,20 @@ OverlayCut::Limits OverlayCut::limits(const Extent& extent, double span, const L
   // plane through its values at the corners is above it by at most (radius of a circle around the corners)^2 / 2 of that,
   // and S's own planes by at most the same of a cell. A sagitta is R (difference of lengths) / length or less.
   constexpr Limits kNone{-1, -1};
-  const double lowest = std::max(1.0, extent.least_length - span);
-  const double metres = radius_m_ / extent.least_length;
+  const double per_lowest = 1.0 / std::max(1.0, extent.least_length - span);
+  const double metres = radius_m_ * per_lowest;
   const double deepest_m =
-      metres * extent.half_curve / lowest + radius_m_ * kRounding;     // S outside of the mesh
-  const double cell_m = metres * cell_curve_ + radius_m_ * kRounding;  // S inside of it
+      metres * extent.half_curve * per_lowest + radius_m_ * kRounding;  // S outside of the mesh
+  const double cell_m = metres * cell_curve_ + radius_m_ * kRounding;   // S inside of it
   if (std::max(deepest_m, cell_m) > std::min(most.sagitta_m, most.height_error_m)) return kNone;
   // The height error is total - sagitta, and the sagitta from -deepest to cell.
   const double below_m = std::min(most.total_m, most.height_error_m - deepest_m);
   const double above_m = std::min(most.total_m, most.height_error_m - cell_m);
-  // |D| n R / (W (W - |D|)) <= total.
-  const double farthest = extent.most_length * radius_m_;
-  const auto difference = [&](double total_m) {
-    const double by_depth = total_m * extent.least_depth;
-    return by_depth * extent.least_depth / (farthest + by_depth) * (1 - 1e-9) - rounding_;
-  };
-  return {difference(below_m), difference(above_m)};
+  // |D| n R / (W (W - |D|)) <= total, that is |D| <= total W^2 / (n R + total W). One division for both.
+  const double depth = extent.least_depth;
+  const double farthest = extent.most_length * radius_m_ + std::max(below_m, above_m) * depth;
+  const double per_metre = depth * depth / farthest * (1 - 1e-9);
+  return {below_m * per_metre - rounding_, above_m * per_metre - rounding_};
 }
 
 bool OverlayCut::leaves_out(const CoarseMesh::Triangle& t, const CoarseMesh::Box& box,

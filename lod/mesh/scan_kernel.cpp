@@ -19,16 +19,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::CappedTag<double, kScanPad>;
 using DoubleVec = hn::Vec<Doubles>;
 
-// Replaces `worst` by the worst of some posts, of equals the first.
-HWY_INLINE void take_worse(const DoubleVec error, const DoubleVec post, WorstPost& worst) {
+// Returns the worst of some posts, of equals the first.
+HWY_INLINE WorstPost worst_of(const DoubleVec error, const DoubleVec post) {
   const Doubles d;
   const DoubleVec most = hn::MaxOfLanes(d, error);
-  const double most_m = hn::GetLane(most);
-  if (most_m < worst.geometric_error_m) return;
   const DoubleVec no_post = hn::Set(d, 4294967295.0);
-  const auto first = static_cast<std::uint32_t>(
-      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(error, most), post, no_post))));
-  if (most_m > worst.geometric_error_m || first < worst.post) worst = {most_m, first};
+  const DoubleVec first = hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(error, most), post, no_post));
+  return {hn::GetLane(most), static_cast<std::uint32_t>(hn::GetLane(first))};
 }
 
 WorstPost box_kernel(const ScannedPosts& posts, const ScannedPlane& plane,
@@ -43,7 +40,8 @@ WorstPost box_kernel(const ScannedPosts& posts, const ScannedPlane& plane,
   const DoubleVec step_1 = hn::Set(d, sides[1].along_y);
   const DoubleVec step_2 = hn::Set(d, sides[2].along_y);
   const DoubleVec row_posts = hn::Set(d, static_cast<double>(posts.side));
-  WorstPost worst;
+  DoubleVec worst = zero;
+  DoubleVec worst_at = zero;
   for (std::uint32_t i = box.i0; i < box.i1; i += lanes) {
     const DoubleVec x = hn::LoadU(d, posts.x + i);
     const DoubleVec at_0 = side_at(sides[0], x);
@@ -68,9 +66,11 @@ WorstPost box_kernel(const ScannedPosts& posts, const ScannedPlane& plane,
       most_at = hn::IfThenElse(hn::Gt(inside, most), here, most_at);
       most = hn::Max(most, inside);
     }
-    take_worse(most, most_at, worst);
+    const auto is_worse = hn::Or(hn::Gt(most, worst), hn::And(hn::Eq(most, worst), hn::Lt(most_at, worst_at)));
+    worst = hn::Max(worst, most);
+    worst_at = hn::IfThenElse(is_worse, most_at, worst_at);
   }
-  return worst;
+  return worst_of(worst, worst_at);
 }
 
 void rows_kernel(const ScannedPosts& posts, const ScannedPlane& plane, std::span<const ScannedRow> rows,
@@ -79,6 +79,7 @@ void rows_kernel(const ScannedPosts& posts, const ScannedPlane& plane, std::span
   const int lanes = static_cast<int>(hn::Lanes(d));
   const DoubleVec dx = hn::Set(d, plane.dx);
   const DoubleVec plane_x = hn::Set(d, plane.x);
+  const ScannedRow* worst_row = nullptr;
   for (const ScannedRow& row : rows) {
     const int count = row.end - row.first;
     if (count <= 0) continue;
@@ -91,9 +92,6 @@ void rows_kernel(const ScannedPosts& posts, const ScannedPlane& plane, std::span
     const auto errors = [&](int k) HWY_ATTR {
       const DoubleVec flat = hn::Add(row_w, hn::Mul(dx, hn::Sub(hn::LoadU(d, x + k), plane_x)));
       return hn::Abs(hn::Mul(hn::Sub(hn::LoadU(d, w + k), flat), hn::LoadU(d, weight + k)));
-    };
-    const auto error = [&](int k) {
-      return std::abs((w[k] - (w_row + plane.dx * (x[k] - plane.x))) * weight[k]);
     };
     // Two independent maxima, so that one does not wait for the other.
     DoubleVec one = hn::Zero(d);
@@ -109,9 +107,19 @@ void rows_kernel(const ScannedPosts& posts, const ScannedPlane& plane, std::span
     }
     const double row_worst = hn::GetLane(hn::MaxOfLanes(d, hn::Max(one, two)));
     if (row_worst <= worst.geometric_error_m) continue;
-    for (k = 0; k + 1 < count && error(k) != row_worst;) ++k;
-    worst = {row_worst, static_cast<std::uint32_t>(first + static_cast<std::size_t>(k))};
+    worst.geometric_error_m = row_worst;
+    worst_row = &row;
   }
+  if (worst_row == nullptr) return;
+  // The first post of that row with this error.
+  const double w_row = plane.w + plane.dy * (posts.y[worst_row->j] - plane.y);
+  const auto error = [&](int i) {
+    const std::size_t post = worst_row->j * posts.side + static_cast<std::size_t>(i);
+    return std::abs((posts.w[post] - (w_row + plane.dx * (posts.x[i] - plane.x))) * posts.weight[post]);
+  };
+  int i = worst_row->first;
+  while (i + 1 < worst_row->end && error(i) != worst.geometric_error_m) ++i;
+  worst.post = static_cast<std::uint32_t>(worst_row->j * posts.side + static_cast<std::size_t>(i));
 }
 
 }  // namespace

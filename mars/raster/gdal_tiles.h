@@ -113,11 +113,15 @@ class TileCursor {
   const Tile& at(int column, int row) {
     const int tile_column = column / kTileSide;
     const int tile_row = row / kTileSide;
+    if (last_ != nullptr && tile_column == last_column_ && tile_row == last_row_) return *last_;
     Slot& slot = slots_[static_cast<std::size_t>((tile_row & 3) * 4 + (tile_column & 3))];
     if (!slot.tile || slot.column != tile_column || slot.row != tile_row) {
       slot = {fetch_(TileId{level_, tile_column, tile_row}), tile_column, tile_row};
     }
-    return *slot.tile;
+    last_ = slot.tile.get();
+    last_column_ = tile_column;
+    last_row_ = tile_row;
+    return *last_;
   }
 
   // Returns the index of a pixel in its tile.
@@ -134,6 +138,9 @@ class TileCursor {
   int level_;
   Fetch fetch_;
   std::array<Slot, 16> slots_;
+  const Tile* last_ = nullptr;  // one of them
+  int last_column_ = 0;
+  int last_row_ = 0;
 };
 
 // Returns the part of a tile that lies inside the raster.

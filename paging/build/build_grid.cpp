@@ -66,8 +66,13 @@ PackedMesh pack_mesh(lod::TileMesh mesh, const lod::Posts& posts, double quantum
 
 std::vector<std::int32_t> to_quanta(const std::vector<double>& heights, double quantum_m) {
   std::vector<std::int32_t> quanta(heights.size());
-  for (std::size_t n = 0; n < heights.size(); ++n)
-    quanta[n] = static_cast<std::int32_t>(std::round(heights[n] / quantum_m));
+  for (std::size_t n = 0; n < heights.size(); ++n) {
+    // std::round(), which is a call for each post. What is cut off is exact.
+    const double q = heights[n] / quantum_m;
+    const auto whole = static_cast<std::int32_t>(q);
+    const double rest = q - whole;
+    quanta[n] = whole + static_cast<std::int32_t>(rest >= 0.5) - static_cast<std::int32_t>(rest <= -0.5);
+  }
   return quanta;
 }
 

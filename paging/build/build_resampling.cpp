@@ -13,16 +13,16 @@ namespace {
 
 // Number of posts that are looked up together: enough that neighbours in a source's rows share the reading of a
 // tile.
-constexpr std::size_t kBatch = std::size_t{1} << 18;
+constexpr std::size_t kBatch = std::size_t{1} << 19;
 
-constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
+// A batch of posts does not fit the caches, so a post keeps its place in the chart where its direction was.
 struct SourcePost {
-  glm::dvec3 direction{};
+  glm::dvec3 place{};  // a direction; after locate() u and v
   double height_m = 0;
-  mars::ChartPoint point;
-  std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of the given ones
-  int source = 0;               // index into PlanetMeta::sources
+  std::uint32_t leaf = kNowhere;  // index of the finest tile, when it is one of the given ones
+  int source = 0;                 // index into PlanetMeta::sources
 };
 
 class Meter {
@@ -34,12 +34,14 @@ class Meter {
         leaves_(leaves),
         threads_(threads),
         step_(step),
-        by_leaf_(leaves.size()) {}
+        by_leaf_(leaves.size()) {
+    posts_.reserve(kBatch);
+  }
 
   void add(std::span<const glm::dvec3> directions, std::span<const double> heights) {
     for (std::size_t n = 0; n < directions.size(); ++n) {
       if (!std::isfinite(heights[n])) continue;
-      posts_.push_back({directions[n], heights[n], {}});
+      posts_.push_back({directions[n], heights[n]});
       if (posts_.size() >= kBatch) measure();
     }
   }
@@ -59,31 +61,39 @@ class Meter {
  private:
   // Neighbours mostly lie in one tile.
   void locate(std::span<SourcePost> posts) const {
-    std::size_t last = kNowhere;
+    std::uint32_t last = kNowhere;
     mars::ChartRect inside;  // of the last tile
     for (SourcePost& p : posts) {
-      p.point = mars::chart_point(p.direction);
-      const bool is_inside = last != kNowhere && p.point.face == leaves_[last].face && p.point.u > inside.u0 &&
-                             p.point.u < inside.u1 && p.point.v > inside.v0 && p.point.v < inside.v1;
+      const mars::ChartPoint point = mars::chart_point(p.place);
+      const bool is_inside = last != kNowhere && point.face == leaves_[last].face && point.u > inside.u0 &&
+                             point.u < inside.u1 && point.v > inside.v0 && point.v < inside.v1;
       if (!is_inside) {
-        const lod::TileKey key = lod::tile_at(p.point, sampling_.plan.leaf_level(p.point));
+        const lod::TileKey key = lod::tile_at(point, sampling_.plan.leaf_level(point));
         const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, morton_less);
-        last =
-            leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
+        last = leaf == leaves_.end() || *leaf != key ? kNowhere
+                                                     : static_cast<std::uint32_t>(leaf - leaves_.begin());
         if (last != kNowhere) inside = lod::chart_rect(key);
       }
       p.leaf = last;
+      p.place = {point.u, point.v, 0};
     }
   }
 
+  std::vector<glm::dvec3> directions_of(std::span<const SourcePost> posts) const {
+    std::vector<glm::dvec3> directions;
+    if (sampling_.meta.sources.size() < 2) return directions;
+    for (const SourcePost& p : posts) directions.push_back(p.place);
+    return directions;
+  }
+
   // Only posts that one source alone makes are visited, so it is the origin of their place.
-  void find_sources(std::span<SourcePost> posts) const {
-    if (sampling_.meta.sources.size() < 2) return;
+  void find_sources(std::span<SourcePost> posts, std::span<const glm::dvec3> all_directions) const {
+    if (all_directions.empty()) return;
     std::vector<glm::dvec3> directions;
     std::vector<std::size_t> numbers;
     for (std::size_t n = 0; n < posts.size(); ++n) {
       if (posts[n].leaf == kNowhere) continue;
-      directions.push_back(posts[n].direction);
+      directions.push_back(all_directions[n]);
       numbers.push_back(n);
     }
     std::vector<int> origin(directions.size());
@@ -98,8 +108,9 @@ class Meter {
     constexpr std::size_t kBlock = 4096;
     vpe::base::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
       const auto block = std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock));
+      const std::vector<glm::dvec3> directions = directions_of(block);
       locate(block);
-      find_sources(block);
+      find_sources(block, directions);
     });
     // Numbers of posts by leaf: a counting sort.
     std::vector<std::size_t> end(leaves_.size() + 1);
@@ -122,7 +133,7 @@ class Meter {
       auto& sums = by_leaf_[leaf];
       for (std::size_t k = end[leaf]; k < end[leaf + 1]; ++k) {
         const SourcePost& p = posts_[by_leaf[k]];
-        const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, stored_.meta.radius_m);
+        const double height_m = lod::surface_height(posts, lines, p.place.x, p.place.y, stored_.meta.radius_m);
         sums[p.source].add(std::abs(height_m - p.height_m));
       }
     });

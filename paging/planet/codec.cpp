@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -127,19 +128,30 @@ Bytes compress(std::span<const std::uint8_t> raw, int level) {
   return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
-Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit) {
+namespace {
+
+// Returns what decompress() returns, in memory of the thread that stays as it is until its next call.
+std::span<const std::uint8_t> decompressed(std::span<const std::uint8_t> packed, std::size_t limit) {
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > limit) {
     throw CodecError("zstd: not a frame of the expected size");
   }
-  Bytes out(static_cast<std::size_t>(size));
+  thread_local Bytes room;
+  room.resize(std::max(room.size(), static_cast<std::size_t>(size)));
   thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                                   ZSTD_freeDCtx);
-  const std::size_t got =
-      ZSTD_decompressDCtx(context.get(), out.data(), out.size(), packed.data(), packed.size());
+  const std::size_t got = ZSTD_decompressDCtx(context.get(), room.data(), static_cast<std::size_t>(size),
+                                              packed.data(), packed.size());
   if (ZSTD_isError(got) != 0U) throw CodecError(std::string("zstd: ") + ZSTD_getErrorName(got));
-  if (got != out.size()) throw CodecError("zstd: frame is shorter than its header states");
-  return out;
+  if (got != size) throw CodecError("zstd: frame is shorter than its header states");
+  return std::span(room).first(got);
+}
+
+}  // namespace
+
+Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit) {
+  const std::span<const std::uint8_t> bytes = decompressed(packed, limit);
+  return {bytes.begin(), bytes.end()};
 }
 
 Bytes encode_heights(std::span<const std::int32_t> quanta, int side) {
@@ -168,20 +180,31 @@ Bytes encode_heights(std::span<const std::int32_t> quanta, int side) {
 std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, int side) {
   const auto n = static_cast<std::size_t>(side);
   const std::size_t count = n * n;
-  const Bytes planes = decompress(packed, 4 * count);
+  const std::span<const std::uint8_t> planes = decompressed(packed, 4 * count);
   if (planes.size() != 4 * count) throw CodecError("heights: wrong number of posts");
   std::vector<std::int32_t> quanta(count);
   Steps steps(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const std::uint8_t* in = planes.data() + j * n;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::uint32_t rest = std::uint32_t{in[i]} | std::uint32_t{in[count + i]} << 8 |
-                                 std::uint32_t{in[2 * count + i]} << 16 |
-                                 std::uint32_t{in[3 * count + i]} << 24;
-      steps[i] += static_cast<std::uint32_t>(unzigzag(rest));
+  const auto rows = [&](const auto& rest_at) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::uint8_t* in = planes.data() + j * n;
+      std::uint32_t* step = steps.data();
+      for (std::size_t i = 0; i < n; ++i) step[i] += static_cast<std::uint32_t>(unzigzag(rest_at(in + i)));
+      std::int32_t* out = quanta.data() + j * n;
+      std::uint32_t height = 0;
+      for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<std::int32_t>(height += step[i]);
     }
-    std::uint32_t height = 0;
-    for (std::size_t i = 0; i < n; ++i) quanta[j * n + i] = static_cast<std::int32_t>(height += steps[i]);
+  };
+  const auto low = [count](const std::uint8_t* in) {
+    return std::uint32_t{in[0]} | std::uint32_t{in[count]} << 8;
+  };
+  // Most tiles have no changes of 2^15 quanta or more.
+  const std::span<const std::uint8_t> high = planes.subspan(2 * count);
+  if (count > 0 && high[0] == 0 && std::memcmp(high.data(), high.data() + 1, high.size() - 1) == 0) {
+    rows(low);
+  } else {
+    rows([&](const std::uint8_t* in) {
+      return low(in) | std::uint32_t{in[2 * count]} << 16 | std::uint32_t{in[3 * count]} << 24;
+    });
   }
   return quanta;
 }

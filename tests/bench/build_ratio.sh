@@ -1,17 +1,21 @@
 #!/bin/bash
 # Build time against gdalwarp (bilinear, 2 threads, as many output posts) followed by gdaladdo, in turn.
-#   tests/bench/build_ratio.sh [--former FORMER_VPE] [--counts] [VPE [DEM [SPACING_M [ROUNDS]]]]
+#   tests/bench/build_ratio.sh [--former FORMER_VPE] [--counts] [--choices] [VPE [DEM [SPACING_M [ROUNDS]]]]
 # Prints seconds of wall and processor time of all, and medians with the least and the largest of their ratios. With a
 # former program it builds in the same turns, and both planets must be equal. --counts adds the instructions of a build with
-# posts twice as far apart, on one thread, by callgrind. Let nothing else run beside it: then the wall times count; beside
-# other work only the processor times do.
+# posts twice as far apart, on one thread, and the branches that callgrind's model of a processor mispredicts. --choices runs
+# GDAL with other choices in the same turns, and prints their processor times over that of the choice compared, and the
+# build's over theirs. Let nothing else run beside it: then the wall times count; beside other work only the processor
+# times do.
 set -euo pipefail
 former=
 counts=false
+choices=false
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --former) former=$2; shift 2 ;;
     --counts) counts=true; shift ;;
+    --choices) choices=true; shift ;;
     *) echo "build_ratio.sh: unknown option $1" >&2; exit 2 ;;
   esac
 done
@@ -35,12 +39,20 @@ build_by() { # PROGRAM NAME SPACING_M THREADS
 }
 build() { build_by "$vpe" new "$spacing" 2; }
 build_former() { build_by "$former" former "$spacing" 2; }
-warp() {
+warp_by() { # COMPRESSION RESAMPLING [OPTION ...]
+  local compression=$1 resampling=$2
+  shift 2
   rm -f "$work"/w.tif*
-  gdalwarp -q -r bilinear -multi -wo NUM_THREADS=2 -ts $((2 * height)) "$height" -co TILED=YES -co COMPRESS=ZSTD \
-    -co NUM_THREADS=2 "$dem" "$work/w.tif"
+  gdalwarp -q -r "$resampling" -multi -wo NUM_THREADS=2 -ts $((2 * height)) "$height" -co TILED=YES \
+    -co COMPRESS="$compression" -co NUM_THREADS=2 "$@" "$dem" "$work/w.tif"
   gdaladdo -q -r average "$work/w.tif" 2 4 8 16
 }
+warp() { warp_by ZSTD bilinear; }
+warp_deflate() { warp_by DEFLATE bilinear; }
+warp_plain() { warp_by NONE bilinear; }
+warp_cubic() { warp_by ZSTD cubic; }
+warp_exact() { warp_by ZSTD bilinear -et 0 -wm 500; }
+other_choices="deflate plain cubic exact"
 . "$(dirname "$0")/timing.sh"
 
 ratio() { # NAME A B: keeps a / b
@@ -64,6 +76,13 @@ for ((n = 1; n <= rounds; ++n)); do
     ratio new_former "$vpe_cpu" "$former_cpu"
     ratio former_gdal "$former_cpu" "$gdal_cpu"
   fi
+  if $choices; then
+    for choice in $other_choices; do
+      read -r _ choice_cpu < <(seconds "warp_$choice")
+      ratio "$choice" "$choice_cpu" "$gdal_cpu"
+      ratio "new_$choice" "$vpe_cpu" "$choice_cpu"
+    done
+  fi
 done
 echo "median ratio of wall times $(summary wall), of processor times $(summary processor)"
 if [[ -n $former ]]; then
@@ -71,12 +90,18 @@ if [[ -n $former ]]; then
   [[ -n $(identity new) && $(identity new) == "$(identity former)" ]] || { echo "the planets differ" >&2; exit 1; }
   echo "equal planets: $(identity new)"
 fi
+if $choices; then
+  for choice in $other_choices; do
+    echo "processor times: $choice / GDAL $(summary "$choice"), vpe / $choice $(summary "new_$choice")"
+  done
+fi
 
-instructions() { # PROGRAM NAME
-  valgrind --tool=callgrind --callgrind-out-file=/dev/null "$1" build "$dem" -o "$work/$2.vpe" --spacing $((2 * spacing)) \
-    --base-spacing $((2 * spacing)) --threads 1 -q 2>&1 | sed -n 's/.*Collected : //p'
+instructions() { # PROGRAM NAME: instructions and mispredicted branches
+  valgrind --tool=callgrind --branch-sim=yes --callgrind-out-file=/dev/null "$1" build "$dem" -o "$work/$2.vpe" \
+    --spacing $((2 * spacing)) --base-spacing $((2 * spacing)) --threads 1 -q 2>&1 |
+    awk '/Collected : / { sub(/.*Collected : /, ""); printf "%.0f, mispredicted branches %.0f", $1, $3 + $5 }'
 }
 if $counts; then
   rm -f "$work"/*.vpe*
-  echo "instructions: $(instructions "$vpe" new)${former:+, former $(instructions "$former" former)}"
+  echo "instructions: $(instructions "$vpe" new)${former:+; former $(instructions "$former" former)}"
 fi

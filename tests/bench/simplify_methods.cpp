@@ -57,8 +57,8 @@ Rtin::Rtin(const lod::Posts& posts, double radius_m)
                               posts.at(p.i, p.j), radius_m);
   };
   const auto corner = [&](Post p) {
-    return lod::Corner{static_cast<std::uint32_t>(p.j * side_ + p.i), static_cast<std::uint32_t>(p.i),
-                       static_cast<std::uint32_t>(p.j), p.i, p.j};
+    return lod::Corner{static_cast<std::uint32_t>(p.j * side_ + p.i), static_cast<std::uint16_t>(p.i),
+                       static_cast<std::uint16_t>(p.j), p.i, p.j};
   };
   // The north and east borders belong to no triangle of the field.
   const auto along_border = [&](Post a, Post b) {

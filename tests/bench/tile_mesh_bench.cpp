@@ -1,6 +1,9 @@
 // Times of the steps of a finest tile's meshing over a planet's posts, by step, and of measuring with pieces left out against
 // measuring all. Errors must be equal to the bit. Processor time; for docs/measurements/build.md.
 //
+// Two ways that builds do not take (docs/design/tried.md) are timed in the same rounds: last meshes of half the triangles, and
+// first meshes of smooth tiles, which have no vertex inside, so that nothing need be searched.
+//
 //   tile_mesh_bench PLANET.vpe [TILES [ROUNDS]]
 #include <algorithm>
 #include <cstdio>
@@ -34,12 +37,13 @@ struct Tile {
   std::vector<lod::TileMesh> meshes;
 };
 
-std::vector<lod::TileMesh> meshes_of(lod::Mesher& mesher, const lod::Posts& posts, double radius_m) {
+std::vector<lod::TileMesh> meshes_of(lod::Mesher& mesher, const lod::Posts& posts, double radius_m,
+                                     double last_share) {
   std::vector<lod::TileMesh> meshes;
   double tolerance_m = lod::nominal_side_m(posts.key.level, radius_m) / kMeshRatio;
   const auto full = static_cast<std::size_t>(2 * posts.intervals * posts.intervals);
   while (meshes.empty() ||
-         (static_cast<double>(meshes.back().triangle_count()) < kLastShare * static_cast<double>(full) &&
+         (static_cast<double>(meshes.back().triangle_count()) < last_share * static_cast<double>(full) &&
           meshes.size() < 12)) {
     const lod::BorderPosts borders = lod::choose_borders(posts, tolerance_m, radius_m);
     meshes.push_back(meshes.empty() ? mesher.mesh(posts, borders, tolerance_m, radius_m)
@@ -65,6 +69,23 @@ std::vector<Tile> tiles_of(const paging::PlanetFile& planet, std::size_t count) 
   return tiles;
 }
 
+bool is_smooth(const lod::TileMesh& mesh) {
+  return std::ranges::all_of(mesh.vertices, [n = mesh.intervals](const lod::MeshVertex& v) {
+    return v.i == 0 || v.j == 0 || v.i == n || v.j == n;
+  });
+}
+
+std::size_t triangles_of(const std::vector<lod::TileMesh>& meshes) {
+  std::size_t count = 0;
+  for (const lod::TileMesh& mesh : meshes) count += mesh.triangle_count();
+  return count;
+}
+
+void print_ratios(const char* what, const std::vector<double>& ratios) {
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  std::printf("%s: %.4f (%.4f..%.4f)\n", what, bench::median_of(ratios), *least, *most);
+}
+
 bool is_same(const lod::ErrorTerms& a, const lod::ErrorTerms& b) {
   return a.total_m == b.total_m && a.sagitta_m == b.sagitta_m && a.height_error_m == b.height_error_m;
 }
@@ -82,12 +103,28 @@ int main(int argc, char** argv) {
   const double radius_m = planet->tree().radius_m();
   std::vector<Tile> tiles = tiles_of(*planet, count);
 
-  enum Step { kMeshing, kPreparing, kMeshPlanes, kMeasuring, kMeasuringAll, kGrid, kGridAll, kSteps };
-  const char* const name[kSteps] = {"meshing",       "posts prepared", "meshes prepared", "measured",
-                                    "measured, all", "grids above",    "grids above, all"};
+  enum Step {
+    kMeshing,
+    kPreparing,
+    kMeshPlanes,
+    kMeasuring,
+    kMeasuringAll,
+    kGrid,
+    kGridAll,
+    kHalf,
+    kSmooth,
+    kSteps
+  };
+  const char* const name[kSteps] = {"meshing",          "posts prepared", "meshes prepared",
+                                    "measured",         "measured, all",  "grids above",
+                                    "grids above, all", "half as many",   "first meshes of smooth tiles"};
   std::vector<std::vector<double>> ms(kSteps);
   std::vector<double> ratios;
   std::vector<double> grid_ratios;
+  std::vector<double> half_ratios;
+  std::vector<double> smooth_shares;
+  std::size_t half_triangles = 0;
+  std::size_t smooth_tiles = 0;
   std::size_t meshes = 0;
   std::size_t triangles = 0;
   std::size_t differences = 0;
@@ -95,10 +132,10 @@ int main(int argc, char** argv) {
   lod::Mesher mesher;
   for (int round = 0; round <= rounds; ++round) {
     std::vector<double> now(kSteps);
-    meshes = triangles = 0;
+    meshes = triangles = half_triangles = smooth_tiles = 0;
     grid_total_m = 0;
     for (Tile& tile : tiles) {
-      now[kMeshing] += processor_ms([&] { tile.meshes = meshes_of(mesher, tile.posts, radius_m); });
+      now[kMeshing] += processor_ms([&] { tile.meshes = meshes_of(mesher, tile.posts, radius_m, kLastShare); });
       std::vector<lod::FinePosts> fine;
       now[kPreparing] += processor_ms([&] { fine.emplace_back(tile.posts, radius_m); });
       for (const lod::TileMesh& mesh : tile.meshes) {
@@ -121,21 +158,38 @@ int main(int argc, char** argv) {
         grid_total_m += terms.total_m;
         differences += !is_same(terms, all);
       }
+      now[kHalf] += processor_ms([&] {
+        const std::vector<lod::TileMesh> half = meshes_of(mesher, tile.posts, radius_m, kLastShare / 2);
+        for (const lod::TileMesh& mesh : half)
+          lod::ErrorMeter(tile.posts.key, mesh, lod::vertex_heights(mesh, tile.posts), radius_m)
+              .measure(fine.front());
+        half_triangles += triangles_of(half);
+      });
+      if (is_smooth(tile.meshes.front())) {
+        ++smooth_tiles;
+        now[kSmooth] += processor_ms([&] { meshes_of(mesher, tile.posts, radius_m, 0); });
+      }
       meshes += tile.meshes.size();
-      for (const lod::TileMesh& mesh : tile.meshes) triangles += mesh.triangle_count();
+      triangles += triangles_of(tile.meshes);
     }
     if (round == 0) continue;
     for (std::size_t s = 0; s < kSteps; ++s) ms[s].push_back(now[s] / static_cast<double>(tiles.size()));
     ratios.push_back(now[kMeasuring] / now[kMeasuringAll]);
     grid_ratios.push_back(now[kGrid] / now[kGridAll]);
+    const double made_ms = now[kMeshing] + now[kMeshPlanes] + now[kMeasuring];
+    half_ratios.push_back(now[kHalf] / made_ms);
+    smooth_shares.push_back(now[kSmooth] / made_ms);
   }
   std::printf("%zu tiles, %zu meshes, %zu triangles, sum of grids' errors %.17g m, %zu errors differ\n",
               tiles.size(), meshes, triangles, grid_total_m, differences);
   std::printf("| step | processor time of a tile, ms |\n|---|---|\n");
   for (std::size_t s = 0; s < kSteps; ++s) std::printf("| %s | %.3f |\n", name[s], bench::median_of(ms[s]));
-  for (const auto& [what, of] : {std::pair("meshes", &ratios), std::pair("grids", &grid_ratios)}) {
-    const auto [least, most] = std::minmax_element(of->begin(), of->end());
-    std::printf("%s, measured / all: %.2f (%.2f..%.2f)\n", what, bench::median_of(*of), *least, *most);
-  }
+  print_ratios("meshes, measured / all", ratios);
+  print_ratios("grids, measured / all", grid_ratios);
+  std::printf("last meshes of half as many triangles: %.2f of all triangles\n",
+              static_cast<double>(half_triangles) / static_cast<double>(triangles));
+  print_ratios("their meshing and measuring / that of all", half_ratios);
+  std::printf("%zu smooth tiles\n", smooth_tiles);
+  print_ratios("their first meshes / meshing and measuring of all tiles", smooth_shares);
   return differences == 0 ? 0 : 1;
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
+#include "paging/build/build_grid.h"
 #include "tests/support/support.h"
 
 namespace {
@@ -65,6 +67,33 @@ TEST(Codec, HeightsSurviveAllValues) {
         n % 2 == 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
   }
   EXPECT_EQ(paging::decode_heights(paging::encode_heights(extreme, 9), 9), extreme);
+}
+
+// Changes of less than 2^15 quanta are decoded from two planes of bytes, others from four.
+TEST(Codec, HeightsSurviveOnBothSidesOfTwoBytes) {
+  for (const std::int32_t change :
+       {0, 1, -1, 255, 32767, -32768, 32768, -32769, 65535, -65536, 1 << 23, 1 << 24}) {
+    std::vector<std::int32_t> h(65 * 65);
+    for (const std::size_t post : {std::size_t{0}, std::size_t{700}, h.size() - 1}) {
+      h[post] = change;
+      EXPECT_EQ(paging::decode_heights(paging::encode_heights(h, 65), 65), h) << change << " at post " << post;
+      h[post] = 0;
+    }
+  }
+}
+
+TEST(Quanta, AreRoundedAsByRound) {
+  Random random(12);
+  std::vector<double> heights{
+      0.0, -0.0, 0.5, -0.5, 1.5, -1.5, 2.5, -2.5, 0.49999999999999994, -0.49999999999999994};
+  for (int n = 0; n < 1000; ++n) heights.push_back(random.integer(-80000, 80000) * 0.25);
+  for (const double quantum_m : {1.0, 0.5, 0.1}) {
+    const std::vector<std::int32_t> quanta = paging::to_quanta(heights, quantum_m);
+    for (std::size_t n = 0; n < heights.size(); ++n) {
+      const double whole = std::round(heights[n] / quantum_m);
+      EXPECT_EQ(quanta[n], static_cast<std::int32_t>(whole)) << heights[n] << " / " << quantum_m;
+    }
+  }
 }
 
 TEST(Codec, SmoothHeightsAreSmall) {
