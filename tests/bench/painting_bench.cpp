@@ -3,8 +3,10 @@
 // "Painting".
 //
 //   painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]
+//   painting_bench PLANET.vpe count CAMERA APPEARANCE
 //
-// CAMERA and APPEARANCE select cases by a part of their name.
+// CAMERA and APPEARANCE select cases by a part of their name. "count" takes whole names and paints one image on one thread,
+// after one that loads: `valgrind --tool=callgrind --toggle-collect=*counted_paint*` tells its instructions.
 //
 // All sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians. "Bare" is
 // the painter's lit image of one colour, in the same rounds.
@@ -19,6 +21,7 @@
 #include "mars/geodesy/sun.h"
 #include "paging/surface/surface.h"
 #include "tests/voxel/painted_by_point.h"
+#include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/paint/image_painter.h"
 
 namespace {
@@ -48,6 +51,14 @@ struct Times {
   }
 };
 
+// Has a name of its own for callgrind.
+__attribute__((noinline)) void counted_paint(vpe::voxel::ImagePainter& painter,
+                                             const core::DrawRequest& request,
+                                             const std::vector<float>& range_m,
+                                             std::vector<vpe::base::Rgb>& out, vpe::base::ThreadPool& pool) {
+  painter.paint(request, range_m, out, {}, pool);
+}
+
 struct AppearanceCase {
   const char* name;
   core::Mode mode;
@@ -60,18 +71,22 @@ struct AppearanceCase {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]\n");
+  const bool counts = argc == 5 && std::strcmp(argv[2], "count") == 0;
+  const int rounds = argc > 2 && !counts ? std::atoi(argv[2]) : 7;
+  if (argc < 2 || argc > 5 || rounds < 1) {
+    std::fprintf(stderr,
+                 "usage: painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]\n"
+                 "       painting_bench PLANET.vpe count CAMERA APPEARANCE\n");
     return 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const auto planet = paging::PlanetFile::open(argv[1]);
-  const int rounds = argc > 2 ? std::atoi(argv[2]) : 7;
   core::DrawRequest request;
   request.view.width = 1920;
   request.view.height = 1080;
   request.sun = mars::sun_direction({-67, -13}, 315, 35);
-  vpe::base::ThreadPool pool(kThreads);
+  const int threads = counts ? 1 : kThreads;
+  vpe::base::ThreadPool pool(threads);
   const paging::Surface surface(planet, kMemory);
   const test_support::PaintedByPoint by_point(planet, kMemory);
   vpe::voxel::ImagePainter painter(planet, kMemory);
@@ -101,21 +116,27 @@ int main(int argc, char** argv) {
   const auto pixels =
       static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
   std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
-              request.view.width, request.view.height, kThreads, rounds);
+              request.view.width, request.view.height, threads, rounds);
   const auto wanted = [&](const char* name, int argument) {
-    return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
+    if (argc <= argument) return true;
+    return counts ? std::strcmp(name, argv[argument]) == 0 : std::strstr(name, argv[argument]) != nullptr;
   };
   for (const CameraCase& camera : cameras) {
     if (!wanted(camera.name, 3)) continue;
     request.view.camera = mars::to_camera(camera.pose, planet->radius_m());
     std::vector<float> range_m(pixels);
-    pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
-      for (int x = 0; x < request.view.width; ++x)
-        range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
-            static_cast<float>(
-                surface.cast(request.view.camera.position_m,
-                             core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
-    });
+    if (counts) {
+      // Single rays would take most of the time under callgrind.
+      vpe::voxel::RangeCaster(planet, kMemory).cast(request.view, {}, pool, range_m);
+    } else {
+      pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
+        for (int x = 0; x < request.view.width; ++x)
+          range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
+              static_cast<float>(
+                  surface.cast(request.view.camera.position_m,
+                               core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
+      });
+    }
     const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
     std::printf("%s (%.0f %% sky)\n", camera.name, 100 * sky / static_cast<double>(pixels));
     for (const AppearanceCase& appearance : appearances) {
@@ -129,6 +150,12 @@ int main(int argc, char** argv) {
       request.settings.shading = appearance.shading;
       request.settings.haze_visibility_m = appearance.haze_m;
       std::vector<vpe::base::Rgb> a(pixels), b(pixels);
+      if (counts) {
+        painter.paint(request, range_m, a, {}, pool);
+        counted_paint(painter, request, range_m, a, pool);
+        std::printf("  %s painted\n", appearance.name);
+        continue;
+      }
       Times caches, bare, ours, theirs;
       std::vector<double> of_bare;
       for (int n = 0; n <= rounds; ++n) {

@@ -4,8 +4,8 @@
 //
 //   ray_modes_bench DIR [ROUNDS] [NAME]
 //
-// DIR holds the planets of ray_bench, or receives them. With NAME, only rows whose name holds it are measured. Rows of rings are
-// processor time of one thread.
+// DIR holds the planets of ray_bench, or receives them. With NAME, only rows whose name holds it are measured. Rows of rings and
+// of nearest samples are processor time of one thread.
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -97,6 +97,19 @@ void compare_rings(Scene& scene, int rounds) {
   }
 }
 
+// Compares nearest samples with the rays of pixels.
+void compare_nearest(Scene& scene, int rounds) {
+  vpe::base::ThreadPool alone(1);
+  RangeOptions nearest = kExact;
+  nearest.sectors.is_nearest = true;
+  for (const double pitch : {-0.5, -10.0, -30.0, -60.0, -90.0}) {
+    const View view = scene.view(1920, 1080, 36, pitch, 0);
+    char name[80];
+    std::snprintf(name, sizeof name, "1920x1080, pitch %g: pixel; nearest", pitch);
+    compare(name, {&scene, view, kExact}, {&scene, view, nearest}, rounds, alone, bench::Clock::kProcessor);
+  }
+}
+
 void run(const std::string& dir, int rounds) {
   vpe::base::ThreadPool pool(2);
   std::map<std::string, Scene> scenes;
@@ -146,6 +159,7 @@ void run(const std::string& dir, int rounds) {
               {&small, small.view(1920, 1080, 36, pitch, 0), options}, rounds, pool);
     }
   }
+  compare_nearest(small, rounds);
   compare_rings(small, rounds);
 }
 

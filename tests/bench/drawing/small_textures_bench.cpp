@@ -1,7 +1,7 @@
 // Compares tiles whose textures have a texel a pixel with the former way, a texel for each post at least, in images by
 // triangles of a planet with imagery.
 //
-//   small_textures_bench PLANET.vpe [ROUNDS [WIDTHxHEIGHT]]
+//   small_textures_bench PLANET.vpe [ROUNDS [WIDTHxHEIGHT [MODE]]]   # textured, coloured, or slope: coloured by slope
 //   small_textures_bench PLANET.vpe count former|now      # makes textures of one image alone, for callgrind
 //
 // A round draws the first image of a new renderer both ways, in turns. Colours are compared with exact rays, one in each
@@ -88,17 +88,28 @@ void compare(const std::shared_ptr<gl::Context>& context, const Planet& planet, 
   }
 }
 
-void run(const Planet& planet, int rounds, int width, int height) {
+// Returns whether MODE is one.
+bool set_mode(const char* mode, core::DrawRequest& request) {
+  if (std::strcmp(mode, "textured") == 0) return true;
+  request.settings.mode = core::Mode::kColoured;
+  if (std::strcmp(mode, "slope") == 0) request.settings.colour = core::Colour::kSlope;
+  return std::strcmp(mode, "coloured") == 0 || request.settings.colour == core::Colour::kSlope;
+}
+
+void run(const Planet& planet, int rounds, int width, int height, const char* mode) {
   const std::shared_ptr<gl::Context> context = gl::Context::create();
   const auto rays = vpe::voxel::make_ray_renderer(planet, {.memory_bytes = kMemory});
   const paging::Surface surface(planet, std::size_t{64} << 20);
-  std::printf("%s, %dx%d, %d rounds in turns; former; now\n\n", context->info().renderer.c_str(), width, height,
-              rounds);
+  std::printf("%s, %dx%d, %s, %d rounds in turns; former; now\n\n", context->info().renderer.c_str(), width,
+              height, mode, rounds);
   std::puts(
       "| view, tolerance | RMS to rays | RMS to 8 x 8 rays a pixel (of one ray) | processor time, now / former | MB, now / "
       "former |\n|---|---|---|---|---|");
-  for (const bench::PlaceOfView& place : bench::kPlaces)
-    compare(context, planet, *rays, place.name, bench::request_at(place, surface, width, height), rounds);
+  for (const bench::PlaceOfView& place : bench::kPlaces) {
+    core::DrawRequest request = bench::request_at(place, surface, width, height);
+    set_mode(mode, request);
+    compare(context, planet, *rays, place.name, request, rounds);
+  }
 }
 
 // Makes the textures of the image from orbit at a tolerance of 0.125 px.
@@ -132,10 +143,13 @@ int main(int argc, char** argv) try {
   const auto rounds = argc > 2 && !counts ? vpe::base::parse_integer(argv[2]) : 7;
   int width = 640, height = 360;
   char rest = 0;
-  if (argc < 2 || argc > 4 || (counts && !formerly && !now) || !rounds || *rounds < 1 || *rounds > 10'000 ||
+  const char* const mode = argc > 4 ? argv[4] : "textured";
+  core::DrawRequest any;
+  if (argc < 2 || argc > 5 || !set_mode(mode, any) || (counts && !formerly && !now) || !rounds || *rounds < 1 ||
+      *rounds > 10'000 ||
       (argc > 3 && !counts && std::sscanf(argv[3], "%dx%d%c", &width, &height, &rest) != 2)) {
     std::fputs(
-        "usage: small_textures_bench PLANET.vpe [ROUNDS [WIDTHxHEIGHT]]\n"
+        "usage: small_textures_bench PLANET.vpe [ROUNDS [WIDTHxHEIGHT [textured|coloured|slope]]]\n"
         "       small_textures_bench PLANET.vpe count former|now\n",
         stderr);
     return 2;
@@ -145,7 +159,7 @@ int main(int argc, char** argv) try {
   if (counts) {
     count(planet, formerly);
   } else {
-    run(planet, static_cast<int>(*rounds), width, height);
+    run(planet, static_cast<int>(*rounds), width, height, mode);
   }
   return 0;
 } catch (const std::exception& e) {

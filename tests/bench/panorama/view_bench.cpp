@@ -1,8 +1,14 @@
 // Times views of panoramas: the places of their pixels, against places computed pixel by pixel, and whole images.
 //   view_bench [ROUNDS]
-// Prints for each kind of image, for 1280 x 720 pixels and a field of view of 60 degrees, the processor time of one thread.
+//   view_bench count pixels|rows
+// Prints for each kind of image, for 1280 x 720 pixels and a field of view of 60 degrees, the processor time of one thread. "count"
+// finds the places of one view of each kind, for `valgrind --tool=callgrind --toggle-collect=*counted_places*`.
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "panorama/viewer/render_view.h"
 #include "panorama/viewer/view_places.h"
@@ -36,26 +42,41 @@ class PatternTiles : public panorama::TileSource {
   std::shared_ptr<panorama::Tile> tile_;
 };
 
+vpe::core::View bench_view() { return panorama::view_of(33.0, -5.0, 60.0, 1280, 720); }
+
+// Return the sum of the first places of rows. They have names of their own for callgrind.
+__attribute__((noinline)) double counted_places_by_pixel(const panorama::PanoramaMap& map,
+                                                         const vpe::core::View& view,
+                                                         std::vector<glm::dvec2>& row) {
+  double sum_px = 0;
+  for (int y = 0; y < view.height; ++y) {
+    for (std::size_t x = 0; x < row.size(); ++x)
+      row[x] =
+          map.place(panorama::to_direction(vpe::core::pixel_ray(view, static_cast<double>(x) + 0.5, y + 0.5)));
+    sum_px += row.front().x;
+  }
+  return sum_px;
+}
+
+__attribute__((noinline)) double counted_places_by_rows(const panorama::PanoramaMap& map,
+                                                        const vpe::core::View& view,
+                                                        std::vector<glm::dvec2>& row) {
+  double sum_px = 0;
+  const panorama::ViewPlaces places(map, view);
+  for (int y = 0; y < view.height; ++y) {
+    places.row(y, row);
+    sum_px += row.front().x;
+  }
+  return sum_px;
+}
+
 void bench_map(const panorama::PanoramaMap& map, int rounds) {
-  const vpe::core::View view = panorama::view_of(33.0, -5.0, 60.0, 1280, 720);
+  const vpe::core::View view = bench_view();
   const panorama::TiledImage image(std::make_unique<PatternTiles>(map), std::size_t{64} << 20);
   std::vector<glm::dvec2> row(static_cast<std::size_t>(view.width));
   double sum_px = 0;
-  const auto exact = [&] {
-    for (int y = 0; y < view.height; ++y) {
-      for (std::size_t x = 0; x < row.size(); ++x)
-        row[x] = map.place(
-            panorama::to_direction(vpe::core::pixel_ray(view, static_cast<double>(x) + 0.5, y + 0.5)));
-      sum_px += row.front().x;
-    }
-  };
-  const auto by_rows = [&] {
-    const panorama::ViewPlaces places(map, view);
-    for (int y = 0; y < view.height; ++y) {
-      places.row(y, row);
-      sum_px += row.front().x;
-    }
-  };
+  const auto exact = [&] { sum_px += counted_places_by_pixel(map, view, row); };
+  const auto by_rows = [&] { sum_px += counted_places_by_rows(map, view, row); };
   panorama::RenderViewOptions options;
   options.threads = 1;
   const auto whole = [&] { sum_px += panorama::render_view(image, map, view, options).pixels.front().r; };
@@ -68,9 +89,25 @@ void bench_map(const panorama::PanoramaMap& map, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 7;
-  std::printf("| work | first, ms | second / first |\n|---|---|---|\n");
-  bench_map(panorama::cylinder_map(6000, 2000, 6000, -180.0, 1200.0), rounds);
-  bench_map(panorama::equirectangular_map(6000, 3000, 6000, -180.0, 1500.0), rounds);
-  bench_map(panorama::faceted_map(8, 750, 2000, 0.0, 1200.0), rounds);
+  const bool counts = argc == 3 && std::strcmp(argv[1], "count") == 0;
+  const bool by_rows = counts && std::strcmp(argv[2], "rows") == 0;
+  const int rounds = argc == 2 ? std::atoi(argv[1]) : 7;
+  if (argc > 3 || (argc == 3 && !by_rows && (!counts || std::strcmp(argv[2], "pixels") != 0)) || rounds < 1) {
+    std::fprintf(stderr, "usage: view_bench [ROUNDS]\n       view_bench count pixels|rows\n");
+    return 2;
+  }
+  if (!counts) std::printf("| work | first, ms | second / first |\n|---|---|---|\n");
+  const vpe::core::View view = bench_view();
+  std::vector<glm::dvec2> row(static_cast<std::size_t>(view.width));
+  for (const panorama::PanoramaMap& map : {panorama::cylinder_map(6000, 2000, 6000, -180.0, 1200.0),
+                                           panorama::equirectangular_map(6000, 3000, 6000, -180.0, 1500.0),
+                                           panorama::faceted_map(8, 750, 2000, 0.0, 1200.0)}) {
+    if (counts) {
+      std::printf("%s: %g\n", std::string(to_string(map.kind)).c_str(),
+                  by_rows ? counted_places_by_rows(map, view, row) : counted_places_by_pixel(map, view, row));
+    } else {
+      bench_map(map, rounds);
+    }
+  }
+  return 0;
 }
