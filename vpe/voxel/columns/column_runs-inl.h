@@ -52,7 +52,7 @@ struct PathTerms {
   V sigma(V x) const { return hn::MulAdd(sigma1, x, sigma0); }
   // Returns the slope of the ray to an event.
   V slope(const FacetEvent<D>& event) const {
-    return hn::Mul(hn::Add(event.height, hn::MulAdd(base1, event.x, base0)), reciprocal(D(), sigma(event.x)));
+    return quotient(D(), hn::Add(event.height, hn::MulAdd(base1, event.x, base0)), sigma(event.x));
   }
   // Returns w R^2 / |E|; divided by sigma it is the inverse horizontal distance.
   V inverse(V x, V height) const { return hn::NegMulAdd(height, per_distance, hn::MulAdd(depth1, x, depth0)); }
@@ -76,15 +76,15 @@ FacetRun<D> facet_run(const PathTerms<D>& terms, const RowModel<D, kKind>& model
   const V base_s0 = hn::NegMulAdd(slope, terms.sigma0, terms.base0);
   const V base_s1 = hn::NegMulAdd(slope, terms.sigma1, terms.base1);
   const V rest = hn::Add(event.height, hn::MulAdd(base_s1, event.x, base_s0));
-  const V per_sigma = reciprocal(d, terms.sigma(event.x));
+  const V per_sigma = quotient(d, one, terms.sigma(event.x));
   const V reached = hn::Mul(hn::Add(event.height, hn::MulAdd(terms.base1, event.x, terms.base0)), per_sigma);
   // The place where the next row's ray meets the facet. The least divisor keeps a quotient of two zeros from being NaN.
   const V before = hn::Min(hn::Add(event.last_height, hn::MulAdd(base_s1, event.last_x, base_s0)), zero);
   const V least = hn::Set(d, T(1e-30));
-  const V share = hn::Min(hn::Mul(before, reciprocal(d, hn::Sub(before, hn::Max(rest, least)))), one);
+  const V share = hn::Min(quotient(d, before, hn::Sub(before, hn::Max(rest, least))), one);
   const V at_x = hn::MulAdd(share, hn::Sub(event.x, event.last_x), event.last_x);
   const V at_h = hn::MulAdd(share, hn::Sub(event.height, event.last_height), event.last_height);
-  const V at = hn::Mul(terms.inverse(at_x, at_h), reciprocal(d, terms.sigma(at_x)));
+  const V at = quotient(d, terms.inverse(at_x, at_h), terms.sigma(at_x));
   const V top = hn::Sub(rows, one);
   const V end = hn::Mul(terms.inverse(event.x, event.height), per_sigma);
   const V rise = hn::Sub(reached, slope);
