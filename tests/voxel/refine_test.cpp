@@ -122,6 +122,87 @@ TEST(RefineRow, GivesUpRaysFarFromTheirHints) {
   EXPECT_EQ(range[150], static_cast<float>(1.1 * range_m(row, 150)));
 }
 
+// Gives hints of a block of rays over tilted ground that are off by shares of the range, other ones in each pixel.
+class OffHints : public BlockHints {
+ public:
+  OffHints(const RayBlock& block, double off) : block_(block), off_(off) {}
+  static double range_m(const RayBlock& block, int row, int column) {
+    return TiltedGround(LineFamily::kRows).range_m(block.camera_m, block.ray(row, column));
+  }
+  void get(int row, float* a, float* b, float* share) override {
+    rows.push_back(row);
+    for (int k = 0; k < block_.columns; ++k) {
+      const double off = off_ * (1 + (7 * row + k) % 5);
+      a[k] = static_cast<float>((1 + off) * range_m(block_, row, k));
+      b[k] = static_cast<float>((1 - off) * range_m(block_, row, k));
+      share[k] = 0.75F;
+    }
+  }
+  std::vector<int> rows;
+
+ private:
+  RayBlock block_;
+  double off_;
+};
+
+RayBlock block_down(int rows, int columns) {
+  const RayRow row = row_down(columns);
+  const mars::FaceAxes& axes = mars::face_axes(mars::Face::kPlusZ);
+  return {row.camera_m, row.radius_m, row.first, row.step, (-0.2 / rows) * axes.up, columns, rows};
+}
+
+TEST(RefineBlock, MeetsTheFacetsOfEachRay) {
+  constexpr std::ptrdiff_t kStride = 150;
+  for (const LineFamily family : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
+    for (const double off : {0.0, 0.0004, 0.007}) {
+      for (const int columns : {3, 100, kRayBlockColumns}) {
+        for (const int rows : {1, 5, kRayBlockRows}) {
+          const RayBlock block = block_down(rows, columns);
+          TiltedGround ground(family);
+          TiltedGround exact(family);
+          OffHints hints(block, off);
+          std::vector<float> range(kStride * kRayBlockRows, -1.0F);
+          std::vector<UnresolvedPixel> unresolved;
+          refine_block(block, hints, ground, exact, range.data(), kStride, unresolved);
+          EXPECT_TRUE(unresolved.empty());
+          EXPECT_EQ(hints.rows.size(), static_cast<std::size_t>(rows));
+          for (int row = 0; row < rows; ++row) {
+            for (int k = 0; k < kStride; ++k) {
+              const auto seen = static_cast<double>(range[static_cast<std::size_t>(row * kStride + k)]);
+              const double expected_m = k < columns ? OffHints::range_m(block, row, k) : -1.0;
+              ASSERT_NEAR(seen, expected_m, 2e-6 * std::abs(expected_m))
+                  << "pixel " << row << ", " << k << " of " << rows << " x " << columns << ", off by " << off;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(RefineBlock, NamesPixelsFarFromTheirHints) {
+  const RayBlock block = block_down(4, 60);
+  TiltedGround ground(LineFamily::kRows);
+  TiltedGround exact(LineFamily::kRows);
+  // Hints at 1.1 and 0.9 of the range and beyond, so the nearer one is far from it too.
+  OffHints hints(block, 0.1);
+  std::vector<float> range(4 * 60);
+  std::vector<UnresolvedPixel> unresolved;
+  refine_block(block, hints, ground, exact, range.data(), 60, unresolved);
+  ASSERT_EQ(unresolved.size(), 4U * 60U);
+  std::vector<bool> is_named(4 * 60);
+  for (const UnresolvedPixel& pixel : unresolved) {
+    const double range_m = OffHints::range_m(block, pixel.row, pixel.column);
+    const double off = 0.1 * (1 + (7 * pixel.row + pixel.column) % 5);
+    EXPECT_EQ(pixel.a, static_cast<float>((1 + off) * range_m));
+    EXPECT_EQ(pixel.b, static_cast<float>((1 - off) * range_m));
+    const auto n = static_cast<std::size_t>(pixel.row * 60 + pixel.column);
+    EXPECT_EQ(range[n], pixel.b);
+    EXPECT_FALSE(is_named[n]);
+    is_named[n] = true;
+  }
+}
+
 TEST(HintsFromRow, AreTheSamplesOnEitherSide) {
   std::vector<float> samples(40);
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = 100.0F + static_cast<float>(n * n);

@@ -15,33 +15,33 @@ namespace vpe::voxel {
 
 namespace {
 
-constexpr int kTaskRows = 32;
-constexpr int kTaskColumns = 128;
+constexpr int kTaskRows = kRayBlockRows;
+constexpr int kTaskColumns = kRayBlockColumns;
 
-// Holds the hints of one row. For one thread.
-struct RowHints {
-  explicit RowHints(int width)
-      : a(static_cast<std::size_t>(width)),
-        b(static_cast<std::size_t>(width)),
-        share(static_cast<std::size_t>(width)) {}
-  std::vector<float> a;
-  std::vector<float> b;
-  std::vector<float> share;
-  std::vector<int> unresolved;
+// Gives the hints of a block's rows by a function.
+template <class Get>
+class BlockOfHints : public BlockHints {
+ public:
+  explicit BlockOfHints(Get get) : get_(get) {}
+  void get(int row, float* a, float* b, float* share) override { get_(row, a, b, share); }
+
+ private:
+  Get get_;
 };
 
-// Returns what lies in `part` of a rectangle, from the first ray of a block on, as its other rays are computed from
-// that, to the last lane of a vector.
+// Returns the blocks of pixels of `part` that a rectangle touches, as a pixel's last bits depend on those of its block.
 core::SubRectangle in_whole_blocks(const core::SubRectangle& only, const core::SubRectangle& part) {
-  const auto down = [&](int x, int step) { return (x - part.x) / step * step + part.x; };
-  const int x0 = std::max(only.x, part.x);
-  const int x1 = std::min(only.x + only.width, part.x + part.width);
-  const int y0 = std::max(only.y, part.y);
-  const int y1 = std::min(only.y + only.height, part.y + part.height);
+  const auto down = [](int x, int step) { return x / step * step; };
+  const int x0 = std::max(only.x - part.x, 0);
+  const int x1 = std::min(only.x + only.width - part.x, part.width);
+  const int y0 = std::max(only.y - part.y, 0);
+  const int y1 = std::min(only.y + only.height - part.y, part.height);
   if (x0 >= x1 || y0 >= y1) return {};
   const int begin = down(x0, kTaskColumns);
-  const int end = std::min(down(x1 - 1, kMaxLanes) + kMaxLanes, part.x + part.width);
-  return {begin, y0, end - begin, y1 - y0};
+  const int end = std::min(down(x1 - 1, kTaskColumns) + kTaskColumns, part.width);
+  const int begin_row = down(y0, kTaskRows);
+  const int end_row = std::min(down(y1 - 1, kTaskRows) + kTaskRows, part.height);
+  return {part.x + begin, part.y + begin_row, end - begin, end_row - begin_row};
 }
 
 // Casts about the nearer hint, over the walk's height grids in fixed steps, and from the camera if the hint lies
@@ -113,9 +113,9 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
   span.begin = std::clamp(span.begin, first_pixel, last_pixel);
   span.end = std::clamp(span.end, span.begin, last_pixel);
   const auto none = [&](int k) {
-    a[k] = std::numeric_limits<float>::infinity();
-    b[k] = 0;
-    share[k] = 0;
+    a[k - first_pixel] = std::numeric_limits<float>::infinity();
+    b[k - first_pixel] = 0;
+    share[k - first_pixel] = 0;
   };
   const auto samples = [&](const ViewSector& sector) {
     return samples_[static_cast<std::size_t>(&sector - plan.sectors().data())].data();
@@ -127,8 +127,8 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
       const double first =
           (map.scale * (part.x + span.begin + 0.5) + map.shift - sector->first_line) / sector->spacing;
       hints_from_row(samples(*sector) + std::ptrdiff_t{step} * sector->lines, sector->lines, first,
-                     map.scale / sector->spacing, span.end - span.begin, a + span.begin, b + span.begin,
-                     share + span.begin);
+                     map.scale / sector->spacing, span.end - span.begin, a + (span.begin - first_pixel),
+                     b + (span.begin - first_pixel), share + (span.begin - first_pixel));
     } else {
       for (int k = span.begin; k < span.end; ++k) none(k);
     }
@@ -149,12 +149,11 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
     const auto step = static_cast<std::size_t>(part.x + first - sector->first_step);
     hints_from_columns(samples(*sector) + static_cast<std::ptrdiff_t>(step) * sector->lines, sector->lines,
                        sector->line_scale.data() + step, sector->line_shift.data() + step,
-                       static_cast<float>(y - sector->origin), last - first, a + first, b + first,
-                       share + first);
+                       static_cast<float>(y - sector->origin), last - first, a + (first - first_pixel),
+                       b + (first - first_pixel), share + (first - first_pixel));
     const auto copy = [&](int from, int to_begin, int to_end) {
-      std::fill(a + to_begin, a + to_end, a[from]);
-      std::fill(b + to_begin, b + to_end, b[from]);
-      std::fill(share + to_begin, share + to_end, share[from]);
+      for (float* const out : {a, b, share})
+        std::fill(out + (to_begin - first_pixel), out + (to_end - first_pixel), out[from - first_pixel]);
     };
     copy(first, begin, first);
     copy(last - 1, last, end);
@@ -228,36 +227,36 @@ void SectorCaster::cast(const core::View& view, const SectorForm& form, const Co
     const ScratchPool::Lease scratch = scratches.acquire();
     FacetFinder finder(walk, scratch->tiles);
     FacetFinder exact_finder(walk, scratch->tiles);
-    RowHints hints(part.width);
+    std::vector<UnresolvedPixel> unresolved;
     const int first = first_row + static_cast<int>(task) * kTaskRows;
     const int last = std::min(first + kTaskRows, end_row);
     // In blocks, so that neighbouring rows find their samples and height grids in the caches.
     for (int begin = first_column; begin < first_column + pixels.width; begin += kTaskColumns) {
       const int end = std::min(begin + kTaskColumns, first_column + pixels.width);
       prefetch_beside(plan, {part.x + begin, part.y + first, end - begin, last - first});
-      for (int row = first; row < last; ++row) {
-        find_hints(plan, part, row, begin, end, hints.a.data(), hints.b.data(), hints.share.data());
-        float* const out =
-            range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width) + begin;
-        RayRow rays;
-        rays.camera_m = view.camera.position_m;
-        rays.radius_m = walk.camera().radius_m;
-        rays.first = (part.x + begin + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up +
-                     focal * axes.forward;
-        rays.step = axes.right;
-        rays.count = end - begin;
-        hints.unresolved.clear();
-        const float* const a = hints.a.data() + begin;
-        const float* const b = hints.b.data() + begin;
-        const float* const share = hints.share.data() + begin;
-        refine_row(rays, a, b, share, finder, exact_finder, out, hints.unresolved);
-        for (const int k : hints.unresolved) {
-          const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          std::optional<double> range;
-          if (single_rays != nullptr) range = single_rays->cast_near(view.camera.position_m, ray, a[k], b[k]);
-          if (!range) range = march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]);
-          out[k] = static_cast<float>(*range);
-        }
+      RayBlock rays;
+      rays.camera_m = view.camera.position_m;
+      rays.radius_m = walk.camera().radius_m;
+      rays.first = (part.x + begin + 0.5 - cx) * axes.right + (cy - (part.y + first + 0.5)) * axes.up +
+                   focal * axes.forward;
+      rays.step = axes.right;
+      rays.down = -axes.up;
+      rays.columns = end - begin;
+      rays.rows = last - first;
+      BlockOfHints hints([&](int row, float* a, float* b, float* share) {
+        find_hints(plan, part, first + row, begin, end, a, b, share);
+      });
+      float* const out =
+          range_m.data() + static_cast<std::size_t>(first) * static_cast<std::size_t>(part.width) + begin;
+      unresolved.clear();
+      refine_block(rays, hints, finder, exact_finder, out, part.width, unresolved);
+      for (const UnresolvedPixel& pixel : unresolved) {
+        const glm::dvec3 ray = glm::normalize(rays.ray(pixel.row, pixel.column));
+        std::optional<double> range;
+        if (single_rays != nullptr)
+          range = single_rays->cast_near(view.camera.position_m, ray, pixel.a, pixel.b);
+        if (!range) range = march_near(walk, finder, view.camera.position_m, ray, pixel.a, pixel.b);
+        out[std::ptrdiff_t{pixel.row} * part.width + pixel.column] = static_cast<float>(*range);
       }
     }
   });

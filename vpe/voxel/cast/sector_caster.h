@@ -48,7 +48,7 @@ class SectorCaster {
   //
   // With `only`, a rectangle of the full image, it casts the samples and rays of that rectangle alone (its width 0:
   // all of the drawn part). Its ranges are the same to the bit; those beside it are left alone, except that it is
-  // widened to where blocks of columns begin.
+  // widened to whole blocks of kRayBlockColumns x kRayBlockRows pixels (columns/refine.h), counted from the corner of the drawn part.
   void cast(const core::View& view, const SectorForm& form, const ColumnWalk& walk, ScratchPool& scratches,
             const SingleRays* single_rays, base::ThreadPool& pool, std::span<float> range_m,
             const core::SubRectangle& only = {});

@@ -23,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kMaxRounds = 8;  // facets that are tried in one grid
 constexpr int kMaxGrids = 12;
 
-// Refines as many pixels as D has lanes. D is a vector of float or, for grids below the camera, of double. Rays<D> (RowRays,
+// Refines as many pixels as D has lanes. D is a vector of float or, for grids below the camera, of double. Rays<D> (BlockRays,
 // RoundRays) gives their directions.
 template <class D, template <class> class Rays>
 class FacetRefiner {
@@ -92,7 +92,7 @@ class FacetRefiner {
   // Meets one facet for each lane in `todo`: does what the first round of refine() does and tests whether the second one would find
   // the lane, all without branches. Returns the lanes that were found; lanes beside borders of grids may be left out. Those in `dropped`
   // refine() would give up; it serves for the others.
-  M meet_once(M todo, V low, V high, V& t, M& dropped) {
+  HWY_INLINE M meet_once(M todo, V low, V high, V& t, M& dropped) {
     const D d;
     if (HWY_UNLIKELY(!grid_.is_selected())) select_grid(todo, t);
     M here;
@@ -114,6 +114,36 @@ class FacetRefiner {
     return hn::And(moved, grid_.is_on(cell, grid_.position_at(ray_, t)));
   }
 
+  // Meets one facet for each lane in `todo` as meet_once() does, in as many grids as they lie over.
+  M meet_each(M todo, V low, V high, V& t, M& dropped) {
+    const D d;
+    M found = hn::MaskFromVec(hn::Zero(d));
+    dropped = found;
+    for (int grids = 0; grids < kMaxGrids && !hn::AllFalse(d, todo); ++grids) {
+      if (!grid_.is_selected()) select_grid(todo, t);
+      M here;
+      typename Grid::Position position = grid_.position_at(ray_, t);
+      typename Grid::Cell cell = grid_.cell_at(position, here);
+      here = hn::And(todo, here);
+      if (hn::AllFalse(d, here)) {
+        select_grid(todo, t);
+        position = grid_.position_at(ray_, t);
+        cell = grid_.cell_at(position, here);
+        here = hn::And(todo, here);
+        // On the border of two grids.
+        if (hn::AllFalse(d, here)) break;
+      }
+      todo = hn::AndNot(here, todo);
+      if (grid_.is_other_kind()) continue;
+      const Meeting meeting = meet(cell, low, high);
+      const M moved = hn::And(here, meeting.is_good);
+      dropped = hn::Or(dropped, hn::AndNot(meeting.is_good, here));
+      t = hn::IfThenElse(moved, meeting.t, t);
+      found = hn::Or(found, hn::And(moved, grid_.is_on(cell, grid_.position_at(ray_, t))));
+    }
+    return found;
+  }
+
   const Grid& grid() const { return grid_; }
   // Forgets the grid that is selected.
   void leave_grid() { grid_.leave(); }
@@ -123,6 +153,7 @@ class FacetRefiner {
     rays_.enter(grid_);
     ray_ = rays_.on_grid();
   }
+  hn::Vec<DI> grids_at(V t, int side) const { return grid_.number_of(grid_.position_at(ray_, t), side); }
   // Returns the ray of one lane in all lanes, in the terms of the grid that is selected.
   OnGrid<D> ray_of(std::size_t lane) const {
     const D d;
@@ -158,7 +189,7 @@ class FacetRefiner {
     M is_good;
   };
   template <class Place>  // Grid::Facet or Grid::Cell
-  Meeting meet(const Place& facet, V low, V high) const {
+  HWY_INLINE Meeting meet(const Place& facet, V low, V high) const {
     const D d;
     const typename Grid::Plane plane = grid_.plane_of(facet, ray_);
     const V next = hn::Neg(hn::Div(plane.at_camera, plane.slope));

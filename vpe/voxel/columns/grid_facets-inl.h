@@ -101,6 +101,20 @@ class GridFacets {
     return hn::And(hn::Gt(p.z, hn::Zero(D())), hn::And(x, y));
   }
 
+  // Numbers grids of the size of the selected one, which is in the middle of side x side, row by row. Positions beyond belong to the
+  // outermost grids.
+  VI number_of(const Position& p, int side) const {
+    const D d;
+    const DI di;
+    const V per_grid = hn::Div(hn::Set(d, T(1)), hn::Add(last_, hn::Set(d, T(1))));
+    const V half = hn::Set(d, static_cast<T>(side / 2));
+    const V most = hn::Set(d, static_cast<T>(side - 1));
+    const auto whole = [&](V x) {
+      return hn::Min(hn::Max(hn::Floor(hn::MulAdd(x, per_grid, half)), hn::Zero(d)), most);
+    };
+    return hn::ConvertTo(di, hn::MulAdd(whole(p.y), hn::Set(d, static_cast<T>(side)), whole(p.x)));
+  }
+
   // Returns how long a post is along a ray at a range, in each lane: between two lines of the family that it crosses more often.
   V post_along(const OnGrid<D>& ray, V t) const {
     const Position p = position_at(ray, t);
@@ -164,7 +178,7 @@ class GridFacets {
     V at_camera, slope;
   };
   template <class Place>  // Facet or Cell
-  Plane plane_of(const Place& f, const OnGrid<D>& ray) const {
+  HWY_INLINE Plane plane_of(const Place& f, const OnGrid<D>& ray) const {
     const Corners c = corners(f.i, f.j, f.lower);
     const V first = hn::Sub(c.between, c.first);
     const V second = hn::Sub(c.across, c.between);
@@ -194,7 +208,7 @@ class GridFacets {
   struct Corners {
     V first, across, between;
   };
-  Corners corners(V i, V j, M lower) const {
+  HWY_INLINE Corners corners(V i, V j, M lower) const {
     const D d;
     const DI di;
     const T* const from = posts();

@@ -49,6 +49,25 @@ class PixelRefiner {
     return floats_.meet_once(todo, low, high, t, dropped);
   }
 
+  // Does what FacetRefiner::meet_each() does.
+  M meet_each(M todo, V low, V high, V& t, M& dropped) {
+    return floats_.meet_each(todo, low, high, t, dropped);
+  }
+
+  // Selects the height grid that the ray of a pixel is over at a range.
+  void select_grid_of(int pixel, float range_m) {
+    const int only[kRoom] = {pixel};
+    floats_.leave_grid();
+    take(only);
+    floats_.select_grid(0, range_m);
+  }
+  // Takes the rays of pixels, one for each lane, and returns numbers of the grids below their places t: numbers of one row after the
+  // other, `side` a row, if the selected grid is in the middle and all are as large as that.
+  hn::Vec<hn::RebindToSigned<FloatTag>> grids_at(const int* pixels, V t, int side) {
+    take(pixels);
+    return floats_.grids_at(t, side);
+  }
+
   // Forgets the height grid at hand, so that what follows does not depend on the pixels before.
   void leave_grid() { floats_.leave_grid(); }
 
@@ -114,6 +133,7 @@ class PixelRefiner {
     return hn::Gt(hn::Load(d, marks), hn::Zero(d));
   }
 
+  static constexpr std::size_t kRoom = 16;
   const int* pixels_ = nullptr;  // of the lanes
   FacetRefiner<FloatTag, Rays> floats_;
   FacetRefiner<DoubleTag, Rays> doubles_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "vpe/voxel/columns/refine.h"
@@ -10,21 +11,56 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "vpe/voxel/columns/block_pixels-inl.h"
 #include "vpe/voxel/columns/nearest_rays-inl.h"
 #include "vpe/voxel/columns/refine_hints-inl.h"
-#include "vpe/voxel/columns/row_pixels-inl.h"
 
 #if HWY_ONCE
 namespace vpe::voxel {
 
-HWY_EXPORT(refine_row_kernel);
+HWY_EXPORT(refine_block_kernel);
 HWY_EXPORT(hints_from_row_kernel);
 HWY_EXPORT(hints_from_columns_kernel);
 HWY_EXPORT(nearest_in_columns_kernel);
 
+namespace {
+
+// Gives hints of one row.
+class RowOfHints : public BlockHints {
+ public:
+  RowOfHints(const float* a, const float* b, const float* share, int count)
+      : a_(a), b_(b), share_(share), count_(count) {}
+  void get(int /*row*/, float* a, float* b, float* share) override {
+    std::copy_n(a_, count_, a);
+    std::copy_n(b_, count_, b);
+    std::copy_n(share_, count_, share);
+  }
+
+ private:
+  const float* a_;
+  const float* b_;
+  const float* share_;
+  int count_;
+};
+
+}  // namespace
+
+void refine_block(const RayBlock& block, BlockHints& hints, FacetSource& source, FacetSource& exact_source,
+                  float* range, std::ptrdiff_t stride, std::vector<UnresolvedPixel>& unresolved) {
+  HWY_DYNAMIC_DISPATCH(refine_block_kernel)(block, hints, source, exact_source, range, stride, unresolved);
+}
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
                 FacetSource& exact_source, float* range, std::vector<int>& unresolved) {
-  HWY_DYNAMIC_DISPATCH(refine_row_kernel)(row, a, b, share, source, exact_source, range, unresolved);
+  std::vector<UnresolvedPixel> pixels;
+  for (int first = 0; first < row.count; first += kRayBlockColumns) {
+    const int count = std::min(kRayBlockColumns, row.count - first);
+    RowOfHints hints(a + first, b + first, share + first, count);
+    const RayBlock block{
+        row.camera_m, row.radius_m, row.first + static_cast<double>(first) * row.step, row.step, {}, count, 1};
+    pixels.clear();
+    refine_block(block, hints, source, exact_source, range + first, 0, pixels);
+    for (const UnresolvedPixel& pixel : pixels) unresolved.push_back(first + pixel.column);
+  }
 }
 void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
                     float* b, float* share) {
