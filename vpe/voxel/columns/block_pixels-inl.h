@@ -62,9 +62,15 @@ class BlockPixels {
     }
     if (open_count_ == 0) return;
     refiner_.leave_grid();
-    order_by_grid();
     failed_count_ = 0;
-    int count = open_count_;
+    int count = 0;
+    for (int n = 0; n < open_count_; ++n) {
+      const bool waits = open_[n].waits;
+      failed_[failed_count_] = listed_[count] = static_cast<std::uint16_t>(n);
+      failed_count_ += waits ? 1 : 0;
+      count += waits ? 0 : 1;
+    }
+    if (count > 0) order_by_grid(count);
     for (int pass = 0; pass < kPasses && count > 0; ++pass) count = meet_open(count);
     std::copy_n(order_, count, failed_ + failed_count_);
     failed_count_ += count;
@@ -81,8 +87,15 @@ class BlockPixels {
   struct Open {
     int pixel;
     float a, b, share;
-    float t;  // where to go on; negative: nowhere
+    float t;     // where to go on; negative: nowhere
+    bool waits;  // is over a grid of doubles
   };
+
+  static unsigned bits_of(M lanes) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(FloatTag(), lanes, bits);
+    return bits[0] | static_cast<unsigned>(bits[1]) << 8;
+  }
 
   // Refines pixels k, k + 1, ... of a row by the facets of their estimates.
   void meet_first(int row, int k, int used) {
@@ -102,8 +115,8 @@ class BlockPixels {
     const int first = row * kRayBlockColumns + k;
     refiner_.take_from(first);
     V t = e.start;
-    M dropped;
-    const M found = refiner_.meet_once(hn::Not(e.sky), e.low, e.high, t, dropped);
+    M dropped, other_kind;
+    const M found = refiner_.meet_once(hn::Not(e.sky), e.low, e.high, t, dropped, other_kind);
     // Negative: refine() would give up.
     const V seen = hn::IfThenElse(e.sky, e.near, hn::IfThenElse(dropped, hn::Neg(t), t));
     if (HWY_LIKELY(used == lanes)) {
@@ -113,45 +126,46 @@ class BlockPixels {
       hn::Store(seen, d, some);
       std::copy_n(some, used, range);
     }
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Not(hn::Or(found, e.sky)), bits);
-    const unsigned open = bits[0] | static_cast<unsigned>(bits[1]) << 8;
+    const unsigned open = bits_of(hn::Not(hn::Or(found, e.sky)));
     if (open == 0) return;
+    const unsigned waits = bits_of(other_kind);
     // Without a branch for each lane, which would be guessed wrong too often.
     int count = open_count_;
     for (int lane = 0; lane < lanes; ++lane) {
       open_[count].pixel = first + lane;
+      open_[count].waits = (waits >> lane & 1U) != 0;
       count += static_cast<int>(open >> lane & 1U);
     }
     open_count_ = count;
   }
 
-  // Sets order_: the open pixels by the grid that their place is over, as if all grids were as large as that of the first one.
-  void order_by_grid() {
+  // Sets order_: the first `count` pixels in listed_ by the grid that their place is over, as if all grids were as large as that of the first one.
+  void order_by_grid(int count) {
     const FloatTag d;
     const hn::RebindToSigned<FloatTag> di;
     const int lanes = static_cast<int>(hn::Lanes(d));
     constexpr int kKeys = kGrids * kGrids;
     std::uint16_t begin[kKeys + 1] = {};
-    refiner_.select_grid_of(open_[0].pixel, std::abs(open_[0].t));
-    for (int k = 0; k < open_count_; k += lanes) {
+    const Open& middle = open_[listed_[0]];
+    refiner_.select_grid_of(middle.pixel, std::abs(middle.t));
+    for (int k = 0; k < count; k += lanes) {
       alignas(64) int pixels[kVectorRoom];
       alignas(64) float ts[kVectorRoom];
       for (int lane = 0; lane < lanes; ++lane) {
-        const Open& open = open_[std::min(k + lane, open_count_ - 1)];
+        const Open& open = open_[listed_[std::min(k + lane, count - 1)]];
         pixels[lane] = open.pixel;
         ts[lane] = open.t;
       }
       hn::StoreU(refiner_.grids_at(pixels, hn::Abs(hn::Load(d, ts)), kGrids), di, keys_ + k);
-      for (int n = k; n < std::min(k + lanes, open_count_); ++n) ++begin[keys_[n] + 1];
+      for (int n = k; n < std::min(k + lanes, count); ++n) ++begin[keys_[n] + 1];
     }
     for (int key = 0; key < kKeys; ++key)
       begin[key + 1] = static_cast<std::uint16_t>(begin[key + 1] + begin[key]);
-    for (int n = 0; n < open_count_; ++n) order_[begin[keys_[n]]++] = static_cast<std::uint16_t>(n);
+    for (int n = 0; n < count; ++n) order_[begin[keys_[n]]++] = listed_[n];
   }
 
   // Meets one more facet for each of the first `count` open pixels in order_, and keeps there those that need more of them; returns how
-  // many. Appends those that refine() would give up to failed_.
+  // many. Appends those that refine() would give up, or has to begin in doubles, to failed_.
   int meet_open(int count) {
     const FloatTag d;
     const int lanes = static_cast<int>(hn::Lanes(d));
@@ -171,12 +185,11 @@ class BlockPixels {
       V t = hn::Load(d, some[2]);
       refiner_.take(pixels);
       const M todo = hn::Gt(t, hn::Zero(d));
-      M dropped;
-      const M found = refiner_.meet_each(todo, e.low, e.high, t, dropped);
+      M dropped, other_kind;
+      const M found = refiner_.meet_each(todo, e.low, e.high, t, dropped, other_kind);
       hn::Store(hn::IfThenElse(dropped, hn::Neg(t), t), d, some[2]);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, found, bits);
-      const unsigned is_found = bits[0] | static_cast<unsigned>(bits[1]) << 8;
+      const unsigned is_found = bits_of(found);
+      const unsigned leaves = bits_of(hn::Or(dropped, other_kind));
       for (int lane = 0; lane < used; ++lane) {
         const std::uint16_t n = order_[k + lane];
         if ((is_found >> lane & 1U) != 0) {
@@ -184,7 +197,7 @@ class BlockPixels {
           continue;
         }
         open_[n].t = some[2][lane];
-        const bool is_failed = some[2][lane] < 0;
+        const bool is_failed = (leaves >> lane & 1U) != 0;
         failed_[failed_count_] = n;
         order_[kept] = n;
         failed_count_ += is_failed ? 1 : 0;
@@ -263,6 +276,7 @@ class BlockPixels {
   Open open_[kPixels + kVectorRoom];
   int open_count_ = 0;
   alignas(64) int keys_[kPixels + kVectorRoom];
+  std::uint16_t listed_[kPixels + 1];
   std::uint16_t order_[kPixels];
   // Those that are refined last.
   std::uint16_t failed_[kPixels + 1];

@@ -91,8 +91,8 @@ class FacetRefiner {
 
   // Meets one facet for each lane in `todo`: does what the first round of refine() does and tests whether the second one would find
   // the lane, all without branches. Returns the lanes that were found; lanes beside borders of grids may be left out. Those in `dropped`
-  // refine() would give up; it serves for the others.
-  HWY_INLINE M meet_once(M todo, V low, V high, V& t, M& dropped) {
+  // refine() would give up; it serves for the others. Those in `other_kind` are over a grid of the other kind; others may be, too.
+  HWY_INLINE M meet_once(M todo, V low, V high, V& t, M& dropped, M& other_kind) {
     const D d;
     if (HWY_UNLIKELY(!grid_.is_selected())) select_grid(todo, t);
     M here;
@@ -105,8 +105,11 @@ class FacetRefiner {
       cell = grid_.cell_at(position, here);
       here = hn::And(todo, here);
     }
-    dropped = hn::MaskFromVec(hn::Zero(d));
-    if (HWY_UNLIKELY(grid_.is_other_kind())) return dropped;
+    dropped = other_kind = hn::MaskFromVec(hn::Zero(d));
+    if (HWY_UNLIKELY(grid_.is_other_kind())) {
+      other_kind = here;
+      return dropped;
+    }
     const Meeting meeting = meet(cell, low, high);
     const M moved = hn::And(here, meeting.is_good);
     dropped = hn::AndNot(meeting.is_good, here);
@@ -115,10 +118,10 @@ class FacetRefiner {
   }
 
   // Meets one facet for each lane in `todo` as meet_once() does, in as many grids as they lie over.
-  M meet_each(M todo, V low, V high, V& t, M& dropped) {
+  M meet_each(M todo, V low, V high, V& t, M& dropped, M& other_kind) {
     const D d;
     M found = hn::MaskFromVec(hn::Zero(d));
-    dropped = found;
+    dropped = other_kind = found;
     for (int grids = 0; grids < kMaxGrids && !hn::AllFalse(d, todo); ++grids) {
       if (!grid_.is_selected()) select_grid(todo, t);
       M here;
@@ -134,7 +137,10 @@ class FacetRefiner {
         if (hn::AllFalse(d, here)) break;
       }
       todo = hn::AndNot(here, todo);
-      if (grid_.is_other_kind()) continue;
+      if (grid_.is_other_kind()) {
+        other_kind = hn::Or(other_kind, here);
+        continue;
+      }
       const Meeting meeting = meet(cell, low, high);
       const M moved = hn::And(here, meeting.is_good);
       dropped = hn::Or(dropped, hn::AndNot(meeting.is_good, here));

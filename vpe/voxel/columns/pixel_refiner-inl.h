@@ -45,13 +45,13 @@ class PixelRefiner {
   void take_from(int k) { floats_.take_from(k); }
 
   // Does what FacetRefiner::meet_once() does; refine() serves for the lanes over grids of doubles too.
-  M meet_once(M todo, V low, V high, V& t, M& dropped) {
-    return floats_.meet_once(todo, low, high, t, dropped);
+  M meet_once(M todo, V low, V high, V& t, M& dropped, M& other_kind) {
+    return floats_.meet_once(todo, low, high, t, dropped, other_kind);
   }
 
   // Does what FacetRefiner::meet_each() does.
-  M meet_each(M todo, V low, V high, V& t, M& dropped) {
-    return floats_.meet_each(todo, low, high, t, dropped);
+  M meet_each(M todo, V low, V high, V& t, M& dropped, M& other_kind) {
+    return floats_.meet_each(todo, low, high, t, dropped, other_kind);
   }
 
   // Selects the height grid that the ray of a pixel is over at a range.
