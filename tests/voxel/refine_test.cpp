@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
@@ -31,11 +32,13 @@ class TiltedGround : public FacetSource {
         const int line = family == LineFamily::kColumns ? x : (family == LineFamily::kRows ? y : x - y);
         const int along = family == LineFamily::kColumns ? y : x;
         posts_[static_cast<std::size_t>(lines_.line(line) + along - posts_.data())] =
-            static_cast<float>(kRise_m * x + kFall_m * y);
+            static_cast<float>(height(x, y));
       }
     }
   }
   const Facets& at(const glm::dvec3&) override { return facets_; }
+  // Returns H at a post.
+  static double height(int x, int y) { return kRise_m * x + kFall_m * y; }
 
   // Returns where a ray meets the plane; `direction` is of any length.
   double range_m(const glm::dvec3& camera_m, const glm::dvec3& direction) const {
@@ -175,6 +178,70 @@ TEST(RefineBlock, MeetsTheFacetsOfEachRay) {
             }
           }
         }
+      }
+    }
+  }
+}
+
+// Provides the plane of TiltedGround by two height grids that meet in the middle, one of floats and one of doubles.
+class HalvedGround : public FacetSource {
+ public:
+  HalvedGround() {
+    add(-0.02, float_posts_, floats_);
+    facets_[0].lines = &floats_;
+    add(0.0, double_posts_, doubles_);
+    facets_[1].exact_lines = &doubles_;
+    facets_[1].id = 1;
+  }
+  const Facets& at(const glm::dvec3& place_m) override {
+    const mars::FaceAxes& axes = mars::face_axes(mars::Face::kPlusZ);
+    return facets_[glm::dot(place_m, axes.right) < 0 ? 0 : 1];
+  }
+
+ private:
+  static constexpr int kSide = TiltedGround::kIntervals + 1;
+
+  template <class T>
+  void add(double u0, std::vector<T>& posts, HeightGridLines<T>& lines) {
+    posts.assign(static_cast<std::size_t>(kSide * kSide + 1 + kReadAhead), T(0));
+    lines.reference = {1.0 / TiltedGround::kDepth_m, 0, 0};
+    lines.posts = posts.data() + 1;
+    lines.side = kSide;
+    Facets& facets = facets_[u0 < 0 ? 0 : 1];
+    facets.face = mars::Face::kPlusZ;
+    facets.frame = {TiltedGround::kIntervals, u0, 0.02 / TiltedGround::kIntervals, -0.01,
+                    0.02 / TiltedGround::kIntervals};
+    facets.family = LineFamily::kRows;
+    for (int x = 0; x < kSide; ++x) {
+      for (int y = 0; y < kSide; ++y)
+        posts[static_cast<std::size_t>(lines.line(y) + x - posts.data())] =
+            static_cast<T>(TiltedGround::height(x + (u0 < 0 ? -32 : 32), y));
+    }
+  }
+
+  std::vector<float> float_posts_;
+  std::vector<double> double_posts_;
+  HeightGridLines<float> floats_;
+  HeightGridLines<double> doubles_;
+  std::array<Facets, 2> facets_;
+};
+
+TEST(RefineBlock, MeetsFacetsOfFloatsAndOfDoubles) {
+  const RayBlock block = block_down(kRayBlockRows, kRayBlockColumns);
+  for (const double off : {0.0, 0.0004, 0.007}) {
+    HalvedGround ground;
+    HalvedGround exact;
+    OffHints hints(block, off);
+    std::vector<float> range(static_cast<std::size_t>(block.rows * block.columns));
+    std::vector<UnresolvedPixel> unresolved;
+    refine_block(block, hints, ground, exact, range.data(), block.columns, unresolved);
+    EXPECT_TRUE(unresolved.empty());
+    for (int row = 0; row < block.rows; ++row) {
+      for (int k = 0; k < block.columns; ++k) {
+        const double expected_m = OffHints::range_m(block, row, k);
+        ASSERT_NEAR(static_cast<double>(range[static_cast<std::size_t>(row * block.columns + k)]), expected_m,
+                    2e-6 * expected_m)
+            << "pixel " << row << ", " << k << ", off by " << off;
       }
     }
   }
