@@ -27,7 +27,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// How many facets open pixels are met with, one in each pass, before what is left is refined vector by vector.
+// Limits how many facets open pixels meet, one in each pass, before what is left is refined vector by vector.
 constexpr int kPasses = 8;
 // Room for the lanes of a vector.
 constexpr int kVectorRoom = 16;
@@ -268,17 +268,17 @@ class BlockPixels {
   float* range_;
   std::ptrdiff_t stride_;
   PixelRefiner<BlockRays> refiner_;
-  // Of the row at hand.
+  // Hold the hints of the row at hand.
   alignas(64) float a_[kRayBlockColumns + kVectorRoom];
   alignas(64) float b_[kRayBlockColumns + kVectorRoom];
   alignas(64) float share_[kRayBlockColumns + kVectorRoom];
-  // Pixels that meet_first() did not find.
+  // Holds the pixels that meet_first() did not find.
   Open open_[kPixels + kVectorRoom];
   int open_count_ = 0;
   alignas(64) int keys_[kPixels + kVectorRoom];
   std::uint16_t listed_[kPixels + 1];
   std::uint16_t order_[kPixels];
-  // Those that are refined last.
+  // Holds those that are refined last.
   std::uint16_t failed_[kPixels + 1];
   int failed_count_ = 0;
 };

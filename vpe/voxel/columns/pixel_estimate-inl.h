@@ -1,4 +1,4 @@
-// What the samples beside a pixel say of its range.
+// Holds what the samples beside a pixel say of its range.
 //
 // Part of refine_kernel.cpp, below block_pixels-inl.h.
 #if defined(VPE_VOXEL_PIXEL_ESTIMATE_INL_H_) == defined(HWY_TARGET_TOGGLE)
